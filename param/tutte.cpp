@@ -1,0 +1,289 @@
+// Tutte 1963, "How to draw a graph"; Floater 2003, "Mean value coordinates" and "One-to-one
+// piecewise linear mappings over triangulations": positive weights that need not be symmetric
+// embed a disc over a convex polygon.
+#include "param/tutte.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseLU>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "param/predicates.hpp"
+
+namespace crosspatch {
+namespace {
+
+using std::size_t;
+using Triplets = std::vector<Eigen::Triplet<double>>;
+
+size_t at(int i) {
+  return static_cast<size_t>(i);
+}
+
+Status check_disc(const TriangleMesh& disc, const std::vector<int>& loop) {
+  if (euler_characteristic(disc) != 1)
+    return fail(ErrorCode::kBadInput,
+                fmt::format("disc: Euler characteristic is {}, not 1", euler_characteristic(disc)));
+  size_t boundary = 0;
+  for (int h = 0; h < disc.halfedge_count(); ++h) boundary += disc.twin[at(h)] < 0 ? 1U : 0U;
+  if (boundary != loop.size())
+    return fail(
+        ErrorCode::kBadInput,
+        fmt::format(
+            "disc: {} boundary edges, but the loop has {} vertices", boundary, loop.size()));
+  for (size_t i = 0; i < loop.size(); ++i) {
+    const int u = loop[i], v = loop[(i + 1) % loop.size()];
+    if (u < 0 || u >= disc.vertex_count())
+      return fail(ErrorCode::kBadInput, fmt::format("disc: no boundary vertex {}", u));
+    const int h = disc.out[at(u)];
+    if (disc.twin[at(h)] >= 0 || disc.to(h) != v)
+      return fail(ErrorCode::kBadInput,
+                  fmt::format("disc: ({}, {}) is no boundary edge, surface on the left", u, v));
+  }
+  return {};
+}
+
+Status check_polygon(const MatrixX2d& positions, size_t count) {
+  if (static_cast<size_t>(positions.rows()) != count || count < 3)
+    return fail(
+        ErrorCode::kBadInput,
+        fmt::format("polygon: {} corners for {} boundary vertices", positions.rows(), count));
+  const Eigen::Index n = positions.rows();
+  double turning = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Vector2d a = positions.row(i), b = positions.row((i + 1) % n);
+    const Vector2d c = positions.row((i + 2) % n);
+    const Vector2d d = b - a, e = c - b;
+    // Points placed along a slanted straight side are collinear up to rounding only.
+    const double cross = d.x() * e.y() - d.y() * e.x();
+    if (!positions.row(i).allFinite() || d.norm() == 0 || cross < -1e-9 * d.norm() * e.norm())
+      return fail(ErrorCode::kBadInput,
+                  fmt::format("polygon: not convex at corner {}", (i + 1) % n));
+    turning += std::atan2(cross, d.dot(e));
+  }
+  if (std::abs(turning - 2 * EIGEN_PI) > 1e-3)
+    return fail(ErrorCode::kBadInput,
+                fmt::format("polygon: turns by {} radians, not once", turning));
+  return {};
+}
+
+/// tan(angle / 2) at the corner between the edge vectors a and b.
+double half_angle_tangent(const Vector3d& a, const Vector3d& b) {
+  const double cross = a.cross(b).norm(), lengths = a.norm() * b.norm();
+  return a.dot(b) > 0 ? cross / (lengths + a.dot(b)) : (lengths - a.dot(b)) / cross;
+}
+
+/// Mean-value weight w(h) of the vertex to(h) as seen from from(h), per half-edge; on a boundary
+/// edge only one of its two triangles counts.
+std::vector<double> mean_value_weights(const TriangleMesh& mesh) {
+  std::vector<double> w(at(mesh.halfedge_count()), 0.0);
+  for (int h = 0; h < mesh.halfedge_count(); ++h) {
+    const Vector3d apex = mesh.position(mesh.from(h));
+    const Vector3d a = mesh.position(mesh.to(h)) - apex, b = mesh.position(mesh.tip(h)) - apex;
+    const double t = half_angle_tangent(a, b);
+    w[at(h)] += t / a.norm();
+    if (const int g = mesh.twin[at(prev(h))]; g >= 0) w[at(g)] += t / b.norm();
+  }
+  return w;
+}
+
+/// Weights per half-edge, all positive and, around each vertex, within four orders of magnitude:
+/// longer ratios give means that rounding cannot tell from a neighbour. Vertices with a degenerate
+/// triangle fall back to uniform weights of the same size.
+std::vector<double> positive_weights(const TriangleMesh& mesh, TutteWeights kind) {
+  if (kind == TutteWeights::kUniform) return std::vector<double>(at(mesh.halfedge_count()), 1.0);
+  constexpr double kSmallestRatio = 1e-4;
+  std::vector<double> w = mean_value_weights(mesh);
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    double largest = 0;
+    bool usable = true;
+    for_each_outgoing(mesh, v, [&](int h) {
+      usable = usable && std::isfinite(w[at(h)]);
+      largest = std::max(largest, w[at(h)]);
+    });
+    usable = usable && largest > 0 && std::isfinite(1 / largest);
+    // Scaling a vertex's weights changes nothing for itself; it lets weights of both ends be added.
+    for_each_outgoing(mesh, v, [&](int h) {
+      w[at(h)] = usable ? std::max(w[at(h)] / largest, kSmallestRatio) : 1.0;
+    });
+  }
+  return w;
+}
+
+struct InnerSystem {
+  SparseMatrix matrix;   ///< #inner x #inner
+  Eigen::MatrixX2d rhs;  ///< #inner x 2
+  std::vector<int> row;  ///< per vertex, -1 on the boundary
+};
+
+InnerSystem inner_system(const TriangleMesh& disc,
+                         const std::vector<double>& w,
+                         const MatrixX2d& uv,
+                         const std::vector<bool>& fixed,
+                         bool symmetric) {
+  InnerSystem s;
+  s.row.assign(at(disc.vertex_count()), -1);
+  int n = 0;
+  for (int v = 0; v < disc.vertex_count(); ++v)
+    if (!fixed[at(v)]) s.row[at(v)] = n++;
+  s.rhs = Eigen::MatrixX2d::Zero(n, 2);
+  Triplets entries;
+  entries.reserve(at(disc.halfedge_count() + n));
+  for (int v = 0; v < disc.vertex_count(); ++v) {
+    const int i = s.row[at(v)];
+    if (i < 0) continue;
+    double sum = 0;
+    for_each_outgoing(disc, v, [&](int h) {
+      const int u = disc.to(h), j = s.row[at(u)];
+      const double weight = symmetric ? w[at(h)] + w[at(disc.twin[at(h)])] : w[at(h)];
+      sum += weight;
+      if (j >= 0)
+        entries.emplace_back(i, j, -weight);
+      else
+        s.rhs.row(i) += weight * uv.row(u);
+    });
+    entries.emplace_back(i, i, sum);
+  }
+  s.matrix.resize(n, n);
+  s.matrix.setFromTriplets(entries.begin(), entries.end());
+  return s;
+}
+
+/// Solves for the inner vertices and writes them into `uv`; false where the factorization fails.
+bool solve_inner(const InnerSystem& s, bool symmetric, MatrixX2d& uv) {
+  Eigen::MatrixX2d x;
+  if (symmetric) {
+    const Eigen::SimplicialLDLT<SparseMatrix> solver(s.matrix);
+    if (solver.info() != Eigen::Success) return false;
+    x = solver.solve(s.rhs);
+  } else {
+    // Diagonally dominant: pivots stay on the diagonal, so the symmetric ordering fits.
+    Eigen::SparseLU<SparseMatrix, Eigen::AMDOrdering<int>> solver;
+    solver.isSymmetric(true);
+    solver.compute(s.matrix);
+    if (solver.info() != Eigen::Success) return false;
+    x = solver.solve(s.rhs);
+  }
+  if (!x.allFinite()) return false;
+  for (size_t v = 0; v < s.row.size(); ++v)
+    if (s.row[v] >= 0) uv.row(static_cast<Eigen::Index>(v)) = x.row(s.row[v]);
+  return true;
+}
+
+std::string describe_folds(const TriangleMesh& disc,
+                           const MatrixX2d& uv,
+                           const std::vector<int>& bad) {
+  double worst = 1;
+  int face = bad.front();
+  for (const int f : bad) {
+    const Vector2d a = uv.row(disc.F(f, 0)), b = uv.row(disc.F(f, 1)), c = uv.row(disc.F(f, 2));
+    const Vector2d d = b - a, e = c - a;
+    const double area = (d.x() * e.y() - d.y() * e.x()) / 2;
+    if (area < worst) {
+      worst = area;
+      face = f;
+    }
+  }
+  return fmt::format(
+      "disc: {} of {} triangles are not positive in the plane; worst is {} with area {}",
+      bad.size(),
+      disc.face_count(),
+      face,
+      worst);
+}
+
+}  // namespace
+
+std::vector<int> folded_faces(const TriangleMesh& mesh, const MatrixX2d& uv) {
+  std::vector<int> bad;
+  for (int f = 0; f < mesh.face_count(); ++f)
+    if (orient2d(uv.row(mesh.F(f, 0)), uv.row(mesh.F(f, 1)), uv.row(mesh.F(f, 2))) <= 0)
+      bad.push_back(f);
+  return bad;
+}
+
+Result<MatrixX2d> tutte_embedding(const TriangleMesh& disc,
+                                  const std::vector<int>& boundary_loop,
+                                  const MatrixX2d& boundary_positions,
+                                  const TutteOptions& options) {
+  if (Status s = check_disc(disc, boundary_loop); !s) return tl::unexpected(s.error());
+  if (Status s = check_polygon(boundary_positions, boundary_loop.size()); !s)
+    return tl::unexpected(s.error());
+  MatrixX2d uv = MatrixX2d::Zero(disc.vertex_count(), 2);
+  std::vector<bool> fixed(at(disc.vertex_count()), false);
+  for (size_t i = 0; i < boundary_loop.size(); ++i) {
+    fixed[at(boundary_loop[i])] = true;
+    uv.row(boundary_loop[i]) = boundary_positions.row(static_cast<Eigen::Index>(i));
+  }
+  std::string why = "disc: factorization failed";
+  for (const TutteWeights kind : {options.weights, TutteWeights::kUniform}) {
+    const bool symmetric = kind != TutteWeights::kMeanValue;
+    const std::vector<double> w = positive_weights(disc, kind);
+    const InnerSystem system = inner_system(disc, w, uv, fixed, symmetric);
+    if (system.matrix.rows() > 0 && !solve_inner(system, symmetric, uv)) continue;
+    const std::vector<int> bad = folded_faces(disc, uv);
+    if (bad.empty()) return uv;
+    why = describe_folds(disc, uv, bad);
+  }
+  return fail(ErrorCode::kNumerical, why);
+}
+
+SplitMesh split_chords(const TriangleMesh& mesh) {
+  std::vector<bool> on_boundary(at(mesh.vertex_count()), false);
+  for (int h = 0; h < mesh.halfedge_count(); ++h)
+    if (mesh.twin[at(h)] < 0) on_boundary[at(mesh.from(h))] = true;
+  SplitMesh r;
+  std::vector<int> middle(at(mesh.halfedge_count()), -1);
+  for (int h = 0; h < mesh.halfedge_count(); ++h) {
+    const int g = mesh.twin[at(h)];
+    if (g < h || !on_boundary[at(mesh.from(h))] || !on_boundary[at(mesh.to(h))]) continue;
+    middle[at(h)] = middle[at(g)] = mesh.vertex_count() + static_cast<int>(r.parent_edge.size());
+    r.parent_edge.push_back({mesh.from(h), mesh.to(h)});
+  }
+  std::vector<std::array<int, 3>> faces;
+  const auto add = [&](int f, int a, int b, int c) {
+    faces.push_back({a, b, c});
+    r.parent_face.push_back(f);
+  };
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    // Turn the face so that an unsplit edge, if split and unsplit ones meet, comes last.
+    const auto split = [&](int k) { return middle[at(3 * f + k % 3)] >= 0; };
+    const int count = int{split(0)} + int{split(1)} + int{split(2)};
+    int k = 0;
+    while (count > 0 && count < 3 && !(split(k) && !split(k + 2))) ++k;
+    const int a = mesh.F(f, k % 3), b = mesh.F(f, (k + 1) % 3), c = mesh.F(f, (k + 2) % 3);
+    const int ab = middle[at(3 * f + k % 3)], bc = middle[at(3 * f + (k + 1) % 3)];
+    const int ca = middle[at(3 * f + (k + 2) % 3)];
+    if (count == 0) {
+      add(f, a, b, c);
+    } else if (count == 1) {
+      add(f, a, ab, c);
+      add(f, ab, b, c);
+    } else if (count == 2) {
+      add(f, ab, b, bc);
+      add(f, a, ab, bc);
+      add(f, a, bc, c);
+    } else {
+      add(f, a, ab, ca);
+      add(f, ab, b, bc);
+      add(f, ca, bc, c);
+      add(f, ab, bc, ca);
+    }
+  }
+  MatrixX3d V(mesh.vertex_count() + static_cast<int>(r.parent_edge.size()), 3);
+  V.topRows(mesh.vertex_count()) = mesh.V;
+  for (size_t i = 0; i < r.parent_edge.size(); ++i)
+    V.row(mesh.vertex_count() + static_cast<int>(i)) =
+        (mesh.V.row(r.parent_edge[i][0]) + mesh.V.row(r.parent_edge[i][1])) / 2;
+  MatrixX3i F(static_cast<Eigen::Index>(faces.size()), 3);
+  for (size_t i = 0; i < faces.size(); ++i)
+    F.row(static_cast<Eigen::Index>(i)) << faces[i][0], faces[i][1], faces[i][2];
+  r.mesh = make_mesh(std::move(V), std::move(F)).value();  // splitting keeps a manifold one
+  return r;
+}
+
+}  // namespace crosspatch
