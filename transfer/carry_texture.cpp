@@ -1,0 +1,187 @@
+#include "transfer/carry_texture.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "transfer/overlay_mesh.hpp"
+
+namespace crosspatch {
+namespace {
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+Status check(const AttributedMesh& source,
+             const AttributedMesh& target,
+             const SurfaceMap& map,
+             const CarryTextureOptions& options) {
+  if (!(options.uv_tolerance_texels >= 0))
+    return fail(ErrorCode::kBadInput,
+                fmt::format("UV tolerance {} is negative", options.uv_tolerance_texels));
+  if (!(options.color_tolerance >= 0))
+    return fail(ErrorCode::kBadInput,
+                fmt::format("colour tolerance {} is negative", options.color_tolerance));
+  if (options.default_texels < 1)
+    return fail(ErrorCode::kBadInput,
+                fmt::format("default image size {} is below 1", options.default_texels));
+  const auto in_range = [](const std::vector<int>& faces, int count) {
+    return std::all_of(faces.begin(), faces.end(), [&](int f) { return f >= 0 && f < count; });
+  };
+  if (!in_range(map.source_face, source.prepared.mesh.face_count()) ||
+      !in_range(map.target_face, target.prepared.mesh.face_count()))
+    return fail(ErrorCode::kInternal, "texture transfer: the map names faces the meshes lack");
+  return {};
+}
+
+/// Unit normals per corner of the prepared mesh, 3 #F.
+std::vector<Vector3d> corner_normals(const AttributedMesh& m) {
+  const TriangleMesh& mesh = m.prepared.mesh;
+  std::vector<Vector3d> normals(at(mesh.halfedge_count()));
+  const MatrixX3d smooth = vertex_normals(mesh);
+  for (int h = 0; h < mesh.halfedge_count(); ++h) {
+    Vector3d n = Vector3d::Zero();
+    if (!m.soup.corner_normals.empty())
+      n = m.soup.corner_normals[at(m.prepared.numbering.soup_corner[at(h)])];
+    if (!n.allFinite() || n.norm() < 1e-12) n = smooth.row(mesh.from(h)).transpose();
+    normals[at(h)] = n.normalized();
+  }
+  return normals;
+}
+
+class Assembly {
+ public:
+  Assembly(const AttributedMesh& source,
+           const AttributedMesh& target,
+           const SourceAttributes& attributes)
+      : attributes_(attributes), target_(target.prepared.mesh), normals_(corner_normals(target)) {
+    mesh_.materials = source.soup.materials;
+    mesh_.images = source.soup.images;
+    mesh_.node_transform = target.soup.node_transform;
+    mesh_.uv_sets.resize(at(attributes.uv_sets));
+  }
+
+  TexturedMesh assemble(const OverlayMesh& overlay) {
+    std::vector<int> row(overlay.points.size(), -1);
+    std::vector<int> used;
+    mesh_.triangles.resize(static_cast<Eigen::Index>(overlay.triangles.size()), 3);
+    for (std::size_t t = 0; t < overlay.triangles.size(); ++t) {
+      const OverlayMesh::Triangle& triangle = overlay.triangles[t];
+      mesh_.target_face.push_back(triangle.target_face);
+      mesh_.material.push_back(material_of(triangle));
+      for (std::size_t k = 0; k < 3; ++k) {
+        const int w = triangle.wedge[k];
+        const int point = overlay.wedge_point[at(w)];
+        if (row[at(point)] < 0) {
+          row[at(point)] = static_cast<int>(used.size());
+          used.push_back(point);
+        }
+        mesh_.triangles(static_cast<Eigen::Index>(t), static_cast<Eigen::Index>(k)) =
+            row[at(point)];
+        add_corner(overlay, triangle.target_face, w);
+      }
+    }
+    mesh_.positions.resize(static_cast<Eigen::Index>(used.size()), 3);
+    for (std::size_t i = 0; i < used.size(); ++i)
+      mesh_.positions.row(static_cast<Eigen::Index>(i)) = place(overlay, used[i]).transpose();
+    return std::move(mesh_);
+  }
+
+ private:
+  /// Interpolation would move a vertex of the target in its last digit.
+  Vector3d place(const OverlayMesh& overlay, int point) const {
+    const SurfacePoint& p = overlay.points[at(point)];
+    for (int k = 0; k < 3; ++k)
+      if (p.bary[k] == 1) return target_.position(target_.F(p.face, k));
+    return position(target_, p);
+  }
+
+  void add_corner(const OverlayMesh& overlay, int face, int wedge) {
+    const SurfacePoint p =
+        in_face(target_, overlay.points[at(overlay.wedge_point[at(wedge)])], face);
+    const Vector3d normal = p.bary[0] * normals_[at(3 * face)] +
+                            p.bary[1] * normals_[at(3 * face + 1)] +
+                            p.bary[2] * normals_[at(3 * face + 2)];
+    mesh_.normals.push_back(normal.norm() > 1e-12 ? Vector3d(normal.normalized())
+                                                  : Vector3d(Vector3d::Zero()));
+    const double* value = overlay.attributes.data() + at(wedge * attributes_.width);
+    for (int s = 0; s < attributes_.uv_sets; ++s)
+      mesh_.uv_sets[at(s)].emplace_back(value[2 * s], value[2 * s + 1]);
+    if (!attributes_.colors) return;
+    const double* rgba = value + 2 * attributes_.uv_sets;
+    mesh_.colors.push_back({static_cast<float>(rgba[0]),
+                            static_cast<float>(rgba[1]),
+                            static_cast<float>(rgba[2]),
+                            static_cast<float>(rgba[3])});
+  }
+
+  int material_of(const OverlayMesh::Triangle& triangle) {
+    if (triangle.mapped && triangle.material >= 0) return triangle.material;
+    int& index = triangle.mapped ? plain_ : unmapped_;
+    if (index < 0) {
+      index = static_cast<int>(mesh_.materials.size());
+      Material m;
+      m.name = triangle.mapped ? "default" : "unmapped";
+      // Mid grey, so that missing parts are neither black nor taken for white fur.
+      if (!triangle.mapped) m.base_color_factor = {0.5, 0.5, 0.5, 1};
+      mesh_.materials.push_back(m);
+    }
+    return index;
+  }
+
+  const SourceAttributes& attributes_;
+  const TriangleMesh& target_;
+  std::vector<Vector3d> normals_;
+  TexturedMesh mesh_;
+  int plain_ = -1;
+  int unmapped_ = -1;
+};
+
+void count(const OverlayMesh& overlay, const TriangleMesh& target, CarryTextureStatistics& s) {
+  const Eigen::VectorXd areas = face_areas(target);
+  std::vector<double> lost(at(target.face_count()), 0.0);
+  for (const OverlayMesh::Triangle& t : overlay.triangles) {
+    for (const std::uint8_t side : t.side) s.seam_cuts += (side & kSeam) != 0 ? 1 : 0;
+    if (t.mapped) continue;
+    const Vector3d a = position(target, overlay.points[at(overlay.wedge_point[at(t.wedge[0])])]);
+    const Vector3d b = position(target, overlay.points[at(overlay.wedge_point[at(t.wedge[1])])]);
+    const Vector3d c = position(target, overlay.points[at(overlay.wedge_point[at(t.wedge[2])])]);
+    lost[at(t.target_face)] += (b - a).cross(c - a).norm() / 2;
+  }
+  double missing = 0;
+  for (const double area : lost) missing += area;
+  const double total = areas.sum();
+  s.coverage = total > 0 ? 1 - missing / total : 0;
+  s.triangles = static_cast<int>(overlay.triangles.size());
+  s.unmapped_faces = overlay.unmapped_faces;
+  s.degenerate_polygons = overlay.degenerate_polygons;
+}
+
+}  // namespace
+
+Result<CarriedTexture> carry_texture(const AttributedMesh& source,
+                                     const AttributedMesh& target,
+                                     const SurfaceMap& map,
+                                     const CarryTextureOptions& options) {
+  if (Status s = check(source, target, map, options); !s) return tl::unexpected(s.error());
+  const TriangleMesh& surface = target.prepared.mesh;
+  const SourceAttributes attributes = source_attributes(source, options.default_texels);
+  OverlayMesh overlay = make_overlay_mesh(attributes, source.prepared.mesh, surface, map);
+  CarriedTexture result;
+  result.statistics.target_triangles = surface.face_count();
+  result.statistics.overlay_triangles = static_cast<int>(overlay.triangles.size());
+  const AttributeError worst = thin_out(overlay,
+                                        attributes,
+                                        surface,
+                                        {.uv_tolerance_texels = options.uv_tolerance_texels,
+                                         .color_tolerance = options.color_tolerance});
+  result.statistics.max_uv_error_texels = worst.uv_texels;
+  result.statistics.max_color_error = worst.color;
+  count(overlay, surface, result.statistics);
+  result.mesh = Assembly(source, target, attributes).assemble(overlay);
+  return result;
+}
+
+}  // namespace crosspatch

@@ -1,0 +1,144 @@
+#include "transfer/source_attributes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "transfer/image_size.hpp"
+
+namespace crosspatch {
+namespace {
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+std::array<const TextureRef*, 5> textures(const Material& m) {
+  return {&m.base_color, &m.metallic_roughness, &m.normal, &m.occlusion, &m.emissive};
+}
+
+std::vector<int> polygon_of_corner(const PolygonSoup& soup) {
+  std::vector<int> polygon(soup.corner_vertex.size());
+  for (int p = 0; p < soup.polygon_count(); ++p)
+    for (int c = soup.polygon_begin[at(p)]; c < soup.polygon_begin[at(p + 1)]; ++c)
+      polygon[at(c)] = p;
+  return polygon;
+}
+
+/// A texture transform scales UVs before it turns them; under a turn either axis may meet either
+/// side of the image, so the larger product is taken.
+Vector2d texels_per_unit(const PolygonSoup& soup, const TextureRef& t) {
+  const auto size = image_size(soup.images[at(t.image)]);
+  if (!size) return Vector2d::Zero();
+  const Vector2d texels(size->width, size->height);
+  if (!t.transform) return texels;
+  const Vector2d scale = t.transform->scale.cwiseAbs();
+  if (t.transform->rotation_radians == 0) return texels.cwiseProduct(scale);
+  return Vector2d::Constant(texels.maxCoeff() * scale.maxCoeff());
+}
+
+std::vector<Vector2d> texel_table(const PolygonSoup& soup, int uv_sets, int default_texels) {
+  const int materials = static_cast<int>(soup.materials.size());
+  std::vector<Vector2d> table(at((materials + 1) * uv_sets), Vector2d::Zero());
+  for (int m = 0; m < materials; ++m)
+    for (const TextureRef* t : textures(soup.materials[at(m)]))
+      if (t->image >= 0 && t->uv_set < uv_sets) {
+        Vector2d& entry = table[at((m + 1) * uv_sets + t->uv_set)];
+        entry = entry.cwiseMax(texels_per_unit(soup, *t));
+      }
+  for (Vector2d& entry : table)
+    if (entry.isZero(0)) entry.setConstant(default_texels);
+  return table;
+}
+
+bool needs_uv(const PolygonSoup& soup, int material, int set) {
+  if (material < 0) return false;
+  const auto used = textures(soup.materials[at(material)]);
+  return std::any_of(used.begin(), used.end(), [&](const TextureRef* t) {
+    return t->image >= 0 && t->uv_set == set;
+  });
+}
+
+void gather_corners(const AttributedMesh& source, SourceAttributes& a) {
+  const PolygonSoup& soup = source.soup;
+  const int faces = source.prepared.mesh.face_count();
+  const std::vector<int> polygon = polygon_of_corner(soup);
+  a.values.assign(at(3 * faces * a.width), 0.0);
+  a.material.assign(at(faces), -1);
+  a.usable.assign(at(faces), true);
+  for (int f = 0; f < faces; ++f) {
+    const int first = source.prepared.numbering.soup_corner[at(3 * f)];
+    if (!soup.polygon_material.empty())
+      a.material[at(f)] = soup.polygon_material[at(polygon[at(first)])];
+    for (int k = 0; k < 3; ++k) {
+      const int corner = source.prepared.numbering.soup_corner[at(3 * f + k)];
+      double* out = &a.values[at((3 * f + k) * a.width)];
+      for (int s = 0; s < a.uv_sets; ++s) {
+        const Vector2d uv = soup.uv_sets[at(s)][at(corner)];
+        if (uv.allFinite()) {
+          out[2 * s] = uv[0];
+          out[2 * s + 1] = uv[1];
+        } else if (needs_uv(soup, a.material[at(f)], s)) {
+          a.usable[at(f)] = false;
+        }
+      }
+      if (a.colors)
+        for (int c = 0; c < 4; ++c)
+          out[2 * a.uv_sets + c] = double(soup.corner_colors[at(corner)][at(c)]);
+    }
+  }
+}
+
+bool agree(const SourceAttributes& a, int corner, int other) {
+  // Finer than the spacing of single-precision UVs in [0.5, 1), so that only equal UVs agree.
+  constexpr double kEqual = 1e-8;
+  for (int i = 0; i < a.width; ++i)
+    if (std::abs(a.values[at(corner * a.width + i)] - a.values[at(other * a.width + i)]) > kEqual)
+      return false;
+  return true;
+}
+
+}  // namespace
+
+SourceAttributes source_attributes(const AttributedMesh& source, int default_texels) {
+  SourceAttributes a;
+  a.uv_sets = static_cast<int>(source.soup.uv_sets.size());
+  a.colors = !source.soup.corner_colors.empty();
+  a.width = 2 * a.uv_sets + (a.colors ? 4 : 0);
+  a.texels = texel_table(source.soup, a.uv_sets, default_texels);
+  gather_corners(source, a);
+  const TriangleMesh& mesh = source.prepared.mesh;
+  a.continuous.assign(at(mesh.halfedge_count()), false);
+  for (int h = 0; h < mesh.halfedge_count(); ++h) {
+    const int twin = mesh.twin[at(h)];
+    if (twin < 0) continue;
+    const int f = face_of(h), g = face_of(twin);
+    a.continuous[at(h)] = a.material[at(f)] == a.material[at(g)] && a.usable[at(f)] &&
+                          a.usable[at(g)] && agree(a, h, next(twin)) && agree(a, next(h), twin);
+  }
+  return a;
+}
+
+void evaluate(const SourceAttributes& a, const SurfacePoint& p, double* out) {
+  const double* corner = a.values.data() + at(3 * p.face * a.width);
+  for (int i = 0; i < a.width; ++i)
+    out[i] = p.bary[0] * corner[i] + p.bary[1] * corner[a.width + i] +
+             p.bary[2] * corner[2 * a.width + i];
+}
+
+AttributeError difference(const SourceAttributes& attributes,
+                          int material,
+                          const double* a,
+                          const double* b) {
+  AttributeError error;
+  for (int s = 0; s < attributes.uv_sets; ++s) {
+    const Vector2d& texels = attributes.texels[at((material + 1) * attributes.uv_sets + s)];
+    const Vector2d d(a[2 * s] - b[2 * s], a[2 * s + 1] - b[2 * s + 1]);
+    error.uv_texels = std::max(error.uv_texels, d.cwiseProduct(texels).norm());
+  }
+  for (int i = 2 * attributes.uv_sets; i < attributes.width; ++i)
+    error.color = std::max(error.color, std::abs(a[i] - b[i]));
+  return error;
+}
+
+}  // namespace crosspatch
