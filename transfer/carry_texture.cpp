@@ -5,14 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.hpp"
 #include "transfer/overlay_mesh.hpp"
 
 namespace crosspatch {
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 Status check(const AttributedMesh& source,
              const AttributedMesh& target,
@@ -39,14 +36,14 @@ Status check(const AttributedMesh& source,
 /// Unit normals per corner of the prepared mesh, 3 #F.
 std::vector<Vector3d> corner_normals(const AttributedMesh& m) {
   const TriangleMesh& mesh = m.prepared.mesh;
-  std::vector<Vector3d> normals(at(mesh.halfedge_count()));
+  std::vector<Vector3d> normals(idx(mesh.halfedge_count()));
   const MatrixX3d smooth = vertex_normals(mesh);
   for (int h = 0; h < mesh.halfedge_count(); ++h) {
     Vector3d n = Vector3d::Zero();
     if (!m.soup.corner_normals.empty())
-      n = m.soup.corner_normals[at(m.prepared.numbering.soup_corner[at(h)])];
+      n = m.soup.corner_normals[idx(m.prepared.numbering.soup_corner[idx(h)])];
     if (!n.allFinite() || n.norm() < 1e-12) n = smooth.row(mesh.from(h)).transpose();
-    normals[at(h)] = n.normalized();
+    normals[idx(h)] = n.normalized();
   }
   return normals;
 }
@@ -60,7 +57,7 @@ class Assembly {
     mesh_.materials = source.soup.materials;
     mesh_.images = source.soup.images;
     mesh_.node_transform = target.soup.node_transform;
-    mesh_.uv_sets.resize(at(attributes.uv_sets));
+    mesh_.uv_sets.resize(idx(attributes.uv_sets));
   }
 
   TexturedMesh assemble(const OverlayMesh& overlay) {
@@ -73,13 +70,13 @@ class Assembly {
       mesh_.material.push_back(material_of(triangle));
       for (std::size_t k = 0; k < 3; ++k) {
         const int w = triangle.wedge[k];
-        const int point = overlay.wedge_point[at(w)];
-        if (row[at(point)] < 0) {
-          row[at(point)] = static_cast<int>(used.size());
+        const int point = overlay.wedge_point[idx(w)];
+        if (row[idx(point)] < 0) {
+          row[idx(point)] = static_cast<int>(used.size());
           used.push_back(point);
         }
         mesh_.triangles(static_cast<Eigen::Index>(t), static_cast<Eigen::Index>(k)) =
-            row[at(point)];
+            row[idx(point)];
         add_corner(overlay, triangle.target_face, w);
       }
     }
@@ -92,7 +89,7 @@ class Assembly {
  private:
   /// Interpolation would move a vertex of the target in its last digit.
   Vector3d place(const OverlayMesh& overlay, int point) const {
-    const SurfacePoint& p = overlay.points[at(point)];
+    const SurfacePoint& p = overlay.points[idx(point)];
     for (int k = 0; k < 3; ++k)
       if (p.bary[k] == 1) return target_.position(target_.F(p.face, k));
     return position(target_, p);
@@ -100,15 +97,15 @@ class Assembly {
 
   void add_corner(const OverlayMesh& overlay, int face, int wedge) {
     const SurfacePoint p =
-        in_face(target_, overlay.points[at(overlay.wedge_point[at(wedge)])], face);
-    const Vector3d normal = p.bary[0] * normals_[at(3 * face)] +
-                            p.bary[1] * normals_[at(3 * face + 1)] +
-                            p.bary[2] * normals_[at(3 * face + 2)];
+        in_face(target_, overlay.points[idx(overlay.wedge_point[idx(wedge)])], face);
+    const Vector3d normal = p.bary[0] * normals_[idx(3 * face)] +
+                            p.bary[1] * normals_[idx(3 * face + 1)] +
+                            p.bary[2] * normals_[idx(3 * face + 2)];
     mesh_.normals.push_back(normal.norm() > 1e-12 ? Vector3d(normal.normalized())
                                                   : Vector3d(Vector3d::Zero()));
-    const double* value = overlay.attributes.data() + at(wedge * attributes_.width);
+    const double* value = overlay.attributes.data() + idx(wedge * attributes_.width);
     for (int s = 0; s < attributes_.uv_sets; ++s)
-      mesh_.uv_sets[at(s)].emplace_back(value[2 * s], value[2 * s + 1]);
+      mesh_.uv_sets[idx(s)].emplace_back(value[2 * s], value[2 * s + 1]);
     if (!attributes_.colors) return;
     const double* rgba = value + 2 * attributes_.uv_sets;
     mesh_.colors.push_back({static_cast<float>(rgba[0]),
@@ -141,14 +138,14 @@ class Assembly {
 
 void count(const OverlayMesh& overlay, const TriangleMesh& target, CarryTextureStatistics& s) {
   const Eigen::VectorXd areas = face_areas(target);
-  std::vector<double> lost(at(target.face_count()), 0.0);
+  std::vector<double> lost(idx(target.face_count()), 0.0);
   for (const OverlayMesh::Triangle& t : overlay.triangles) {
     for (const std::uint8_t side : t.side) s.seam_cuts += (side & kSeam) != 0 ? 1 : 0;
     if (t.mapped) continue;
-    const Vector3d a = position(target, overlay.points[at(overlay.wedge_point[at(t.wedge[0])])]);
-    const Vector3d b = position(target, overlay.points[at(overlay.wedge_point[at(t.wedge[1])])]);
-    const Vector3d c = position(target, overlay.points[at(overlay.wedge_point[at(t.wedge[2])])]);
-    lost[at(t.target_face)] += (b - a).cross(c - a).norm() / 2;
+    const Vector3d a = position(target, overlay.points[idx(overlay.wedge_point[idx(t.wedge[0])])]);
+    const Vector3d b = position(target, overlay.points[idx(overlay.wedge_point[idx(t.wedge[1])])]);
+    const Vector3d c = position(target, overlay.points[idx(overlay.wedge_point[idx(t.wedge[2])])]);
+    lost[idx(t.target_face)] += (b - a).cross(c - a).norm() / 2;
   }
   double missing = 0;
   for (const double area : lost) missing += area;

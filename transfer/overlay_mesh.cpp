@@ -5,14 +5,11 @@
 #include <numeric>
 #include <tuple>
 
+#include "core/index.hpp"
 #include "transfer/triangulate.hpp"
 
 namespace crosspatch {
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// Polygons of the overlay and how their sides meet. Side c runs from corner c to the next corner
 /// of its polygon; corners and sides share one numbering.
@@ -28,15 +25,15 @@ struct Sides {
 std::vector<bool> filled_faces(const TriangleMesh& target, const SurfaceMap& map) {
   // Accumulated rounding of an overlay's barycentric coordinates.
   constexpr double kMissing = 1e-6;
-  std::vector<double> area(at(target.face_count()), 0.0);
+  std::vector<double> area(idx(target.face_count()), 0.0);
   for (int p = 0; p < map.polygon_count(); ++p) {
-    const int f = map.target_face[at(p)];
-    const int begin = map.polygon_begin[at(p)], end = map.polygon_begin[at(p + 1)];
+    const int f = map.target_face[idx(p)];
+    const int begin = map.polygon_begin[idx(p)], end = map.polygon_begin[idx(p + 1)];
     const auto bary = [&](int i) {
-      return in_face(target, map.target[at(map.corner[at(i)])], f).bary;
+      return in_face(target, map.target[idx(map.corner[idx(i)])], f).bary;
     };
     for (int i = begin + 1; i + 1 < end; ++i)
-      area[at(f)] += signed_area(bary(begin), bary(i), bary(i + 1));
+      area[idx(f)] += signed_area(bary(begin), bary(i), bary(i + 1));
   }
   std::vector<bool> filled(area.size());
   for (std::size_t f = 0; f < area.size(); ++f) filled[f] = std::abs(area[f] - 1) < kMissing;
@@ -48,25 +45,25 @@ Sides make_sides(const SurfaceMap& map, const std::vector<bool>& filled) {
   s.polygon.resize(map.corner.size());
   s.following.resize(map.corner.size());
   s.opposite.assign(map.corner.size(), -1);
-  s.used.resize(at(map.polygon_count()));
+  s.used.resize(idx(map.polygon_count()));
   std::vector<std::tuple<int, int, int>> ends;
   for (int p = 0; p < map.polygon_count(); ++p) {
-    s.used[at(p)] = filled[at(map.target_face[at(p)])];
-    const int begin = map.polygon_begin[at(p)], end = map.polygon_begin[at(p + 1)];
+    s.used[idx(p)] = filled[idx(map.target_face[idx(p)])];
+    const int begin = map.polygon_begin[idx(p)], end = map.polygon_begin[idx(p + 1)];
     for (int c = begin; c < end; ++c) {
-      s.polygon[at(c)] = p;
-      s.following[at(c)] = c + 1 < end ? c + 1 : begin;
-      const int i = map.corner[at(c)], j = map.corner[at(s.following[at(c)])];
-      if (s.used[at(p)]) ends.emplace_back(std::min(i, j), std::max(i, j), c);
+      s.polygon[idx(c)] = p;
+      s.following[idx(c)] = c + 1 < end ? c + 1 : begin;
+      const int i = map.corner[idx(c)], j = map.corner[idx(s.following[idx(c)])];
+      if (s.used[idx(p)]) ends.emplace_back(std::min(i, j), std::max(i, j), c);
     }
   }
   std::sort(ends.begin(), ends.end());
   for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
     const auto [i, j, c] = ends[k];
     const auto [i2, j2, d] = ends[k + 1];
-    if (i != i2 || j != j2 || map.corner[at(c)] == map.corner[at(d)]) continue;
-    s.opposite[at(c)] = d;
-    s.opposite[at(d)] = c;
+    if (i != i2 || j != j2 || map.corner[idx(c)] == map.corner[idx(d)]) continue;
+    s.opposite[idx(c)] = d;
+    s.opposite[idx(d)] = c;
   }
   return s;
 }
@@ -78,7 +75,7 @@ int edge_between(
   double best_weight = 0;
   for (int k = 0; k < 3; ++k) {
     const int h = 3 * face + k;
-    const int twin = mesh.twin[at(h)];
+    const int twin = mesh.twin[idx(h)];
     if ((twin < 0 ? -1 : face_of(twin)) != other) continue;
     const int tip = (k + 2) % 3;
     const double weight =
@@ -108,44 +105,44 @@ class Builder {
     mesh_.points = map_.target;
     mesh_.target_vertex.assign(mesh_.points.size(), false);
     point_of_vertex_ = map_.point_of_target_vertex;
-    point_of_vertex_.resize(at(target_.vertex_count()), -1);
+    point_of_vertex_.resize(idx(target_.vertex_count()), -1);
     mark_sides();
     snap_points();
     make_wedges();
     for (int p = 0; p < map_.polygon_count(); ++p)
-      if (sides_.used[at(p)]) add_polygon(p);
+      if (sides_.used[idx(p)]) add_polygon(p);
     for (int f = 0; f < target_.face_count(); ++f)
-      if (!filled_[at(f)]) add_unmapped_face(f);
+      if (!filled_[idx(f)]) add_unmapped_face(f);
     return std::move(mesh_);
   }
 
  private:
-  bool usable(int polygon) const { return attributes_.usable[at(map_.source_face[at(polygon)])]; }
+  bool usable(int polygon) const { return attributes_.usable[idx(map_.source_face[idx(polygon)])]; }
 
   bool is_seam(int side, int opposite) const {
-    const int p = sides_.polygon[at(side)], q = sides_.polygon[at(opposite)];
+    const int p = sides_.polygon[idx(side)], q = sides_.polygon[idx(opposite)];
     if (!usable(p) || !usable(q)) return usable(p) != usable(q);
-    const int f = map_.source_face[at(p)], g = map_.source_face[at(q)];
+    const int f = map_.source_face[idx(p)], g = map_.source_face[idx(q)];
     if (f == g) return false;
     const int h = edge_between(source_,
                                f,
                                g,
-                               map_.source[at(map_.corner[at(side)])],
-                               map_.source[at(map_.corner[at(opposite)])]);
-    return h < 0 || !attributes_.continuous[at(h)];
+                               map_.source[idx(map_.corner[idx(side)])],
+                               map_.source[idx(map_.corner[idx(opposite)])]);
+    return h < 0 || !attributes_.continuous[idx(h)];
   }
 
   void mark_sides() {
     marks_.assign(map_.corner.size(), kExact);
     edge_.assign(map_.corner.size(), -1);
     for (int c = 0; c < static_cast<int>(map_.corner.size()); ++c) {
-      const int p = sides_.polygon[at(c)];
-      if (!sides_.used[at(p)]) continue;
-      const int d = sides_.opposite[at(c)];
-      const int f = map_.target_face[at(p)];
-      const int g = d < 0 ? -1 : map_.target_face[at(sides_.polygon[at(d)])];
+      const int p = sides_.polygon[idx(c)];
+      if (!sides_.used[idx(p)]) continue;
+      const int d = sides_.opposite[idx(c)];
+      const int f = map_.target_face[idx(p)];
+      const int g = d < 0 ? -1 : map_.target_face[idx(sides_.polygon[idx(d)])];
       if (d >= 0 && is_seam(c, d)) {
-        marks_[at(c)] |= kSeam;
+        marks_[idx(c)] |= kSeam;
         if (c < d) ++mesh_.seam_sides;
       }
       if (f != g) mark_target_edge(c, f, d);
@@ -153,17 +150,17 @@ class Builder {
   }
 
   void mark_target_edge(int c, int face, int opposite) {
-    const SurfacePoint& p = map_.target[at(map_.corner[at(c)])];
-    const SurfacePoint& q = map_.target[at(map_.corner[at(sides_.following[at(c)])])];
+    const SurfacePoint& p = map_.target[idx(map_.corner[idx(c)])];
+    const SurfacePoint& q = map_.target[idx(map_.corner[idx(sides_.following[idx(c)])])];
     int h = -1;
     if (opposite >= 0) {
-      h = edge_between(target_, face, map_.target_face[at(sides_.polygon[at(opposite)])], p, q);
+      h = edge_between(target_, face, map_.target_face[idx(sides_.polygon[idx(opposite)])], p, q);
     } else {
       // Nothing across: the target's boundary, or a face that is not filled.
       double best = 0;
       for (int k = 0; k < 3; ++k) {
-        const int twin = target_.twin[at(3 * face + k)];
-        if (twin >= 0 && filled_[at(face_of(twin))]) continue;
+        const int twin = target_.twin[idx(3 * face + k)];
+        if (twin >= 0 && filled_[idx(face_of(twin))]) continue;
         const int e = edge_between(target_, face, twin < 0 ? -1 : face_of(twin), p, q);
         const int tip = (e % 3 + 2) % 3;
         const double weight = std::abs(in_face(target_, p, face).bary[tip]) +
@@ -173,39 +170,39 @@ class Builder {
           best = weight;
         }
       }
-      if (h >= 0 && target_.twin[at(h)] >= 0) marks_[at(c)] |= kSeam;
+      if (h >= 0 && target_.twin[idx(h)] >= 0) marks_[idx(c)] |= kSeam;
     }
     if (h < 0) return;
-    marks_[at(c)] |= kTargetEdge;
-    edge_[at(c)] = h;
+    marks_[idx(c)] |= kTargetEdge;
+    edge_[idx(c)] = h;
   }
 
   /// Gives points on edges and vertices of the target exact zeros.
   void snap_points() {
     for (int c = 0; c < static_cast<int>(map_.corner.size()); ++c) {
-      const int h = edge_[at(c)];
+      const int h = edge_[idx(c)];
       if (h < 0) continue;
-      for (const int q : {map_.corner[at(c)], map_.corner[at(sides_.following[at(c)])]}) {
-        SurfacePoint p = in_face(target_, mesh_.points[at(q)], face_of(h));
+      for (const int q : {map_.corner[idx(c)], map_.corner[idx(sides_.following[idx(c)])]}) {
+        SurfacePoint p = in_face(target_, mesh_.points[idx(q)], face_of(h));
         p.bary[(h % 3 + 2) % 3] = 0;
         p.bary = p.bary.cwiseMax(0.0);
         p.bary /= p.bary.sum();
-        mesh_.points[at(q)] = p;
-        const int twin = target_.twin[at(h)];
+        mesh_.points[idx(q)] = p;
+        const int twin = target_.twin[idx(h)];
         edge_points_[twin < 0 ? h : std::min(h, twin)].push_back(q);
       }
     }
     for (int v = 0; v < target_.vertex_count(); ++v) {
-      const int q = point_of_vertex_[at(v)];
+      const int q = point_of_vertex_[idx(v)];
       if (q < 0) continue;
-      mesh_.points[at(q)] = point_at_vertex(target_, v);
-      mesh_.target_vertex[at(q)] = true;
+      mesh_.points[idx(q)] = point_at_vertex(target_, v);
+      mesh_.target_vertex[idx(q)] = true;
     }
   }
 
   int new_wedge(int point) {
     mesh_.wedge_point.push_back(point);
-    mesh_.attributes.resize(mesh_.attributes.size() + at(attributes_.width), 0.0);
+    mesh_.attributes.resize(mesh_.attributes.size() + idx(attributes_.width), 0.0);
     return static_cast<int>(mesh_.wedge_point.size()) - 1;
   }
 
@@ -214,33 +211,33 @@ class Builder {
     std::vector<int> root(map_.corner.size());
     std::iota(root.begin(), root.end(), 0);
     const auto find = [&](int c) {
-      while (root[at(c)] != c) c = root[at(c)] = root[at(root[at(c)])];
+      while (root[idx(c)] != c) c = root[idx(c)] = root[idx(root[idx(c)])];
       return c;
     };
     const auto join = [&](int c, int d) {
       const int a = find(c), b = find(d);
-      root[at(std::max(a, b))] = std::min(a, b);
+      root[idx(std::max(a, b))] = std::min(a, b);
     };
     for (int c = 0; c < static_cast<int>(root.size()); ++c) {
-      const int d = sides_.opposite[at(c)];
-      if (d < 0 || (marks_[at(c)] & kSeam) != 0) continue;
-      join(c, sides_.following[at(d)]);
-      join(sides_.following[at(c)], d);
+      const int d = sides_.opposite[idx(c)];
+      if (d < 0 || (marks_[idx(c)] & kSeam) != 0) continue;
+      join(c, sides_.following[idx(d)]);
+      join(sides_.following[idx(c)], d);
     }
     wedge_of_corner_.assign(root.size(), -1);
     for (int c = 0; c < static_cast<int>(root.size()); ++c) {
-      const int p = sides_.polygon[at(c)];
-      if (!sides_.used[at(p)]) continue;
+      const int p = sides_.polygon[idx(c)];
+      if (!sides_.used[idx(p)]) continue;
       const int r = find(c);
-      if (wedge_of_corner_[at(r)] < 0) {
-        const int point = map_.corner[at(c)];
-        const int w = wedge_of_corner_[at(r)] = new_wedge(point);
+      if (wedge_of_corner_[idx(r)] < 0) {
+        const int point = map_.corner[idx(c)];
+        const int w = wedge_of_corner_[idx(r)] = new_wedge(point);
         if (usable(p) && attributes_.width > 0)
           evaluate(attributes_,
-                   in_face(source_, map_.source[at(point)], map_.source_face[at(p)]),
-                   &mesh_.attributes[at(w * attributes_.width)]);
+                   in_face(source_, map_.source[idx(point)], map_.source_face[idx(p)]),
+                   &mesh_.attributes[idx(w * attributes_.width)]);
       }
-      wedge_of_corner_[at(c)] = wedge_of_corner_[at(r)];
+      wedge_of_corner_[idx(c)] = wedge_of_corner_[idx(r)];
     }
   }
 
@@ -258,7 +255,7 @@ class Builder {
     std::vector<Vector3d> bary;
     for (const int w : wedges)
       bary.push_back(
-          in_face(target_, mesh_.points[at(mesh_.wedge_point[at(w)])], pattern.target_face).bary);
+          in_face(target_, mesh_.points[idx(mesh_.wedge_point[idx(w)])], pattern.target_face).bary);
     auto triangles = triangulate(bary, frame(pattern.target_face));
     if (triangles.empty()) {
       ++mesh_.degenerate_polygons;
@@ -267,26 +264,26 @@ class Builder {
     for (const auto& t : triangles) {
       for (std::size_t k = 0; k < 3; ++k) {
         const int i = t[k], j = t[(k + 1) % 3];
-        pattern.wedge[k] = wedges[at(i)];
-        pattern.side[k] = j == (i + 1) % n ? side_marks[at(i)] : std::uint8_t{kExact};
+        pattern.wedge[k] = wedges[idx(i)];
+        pattern.side[k] = j == (i + 1) % n ? side_marks[idx(i)] : std::uint8_t{kExact};
       }
       mesh_.triangles.push_back(pattern);
     }
   }
 
   void add_polygon(int p) {
-    const int begin = map_.polygon_begin[at(p)], end = map_.polygon_begin[at(p + 1)];
+    const int begin = map_.polygon_begin[idx(p)], end = map_.polygon_begin[idx(p + 1)];
     OverlayMesh::Triangle pattern;
-    pattern.target_face = map_.target_face[at(p)];
+    pattern.target_face = map_.target_face[idx(p)];
     pattern.mapped = usable(p);
-    pattern.material = pattern.mapped ? attributes_.material[at(map_.source_face[at(p)])] : -1;
+    pattern.material = pattern.mapped ? attributes_.material[idx(map_.source_face[idx(p)])] : -1;
     cut({wedge_of_corner_.begin() + begin, wedge_of_corner_.begin() + end},
         {marks_.begin() + begin, marks_.begin() + end},
         pattern);
   }
 
   int point_at(int v) {
-    int& q = point_of_vertex_[at(v)];
+    int& q = point_of_vertex_[idx(v)];
     if (q < 0) {
       q = static_cast<int>(mesh_.points.size());
       mesh_.points.push_back(point_at_vertex(target_, v));
@@ -300,20 +297,20 @@ class Builder {
     std::vector<int> loop;
     std::vector<std::uint8_t> side_marks;
     for (int k = 0; k < 3; ++k) {
-      const int h = 3 * f + k, twin = target_.twin[at(h)];
+      const int h = 3 * f + k, twin = target_.twin[idx(h)];
       loop.push_back(point_at(target_.F(f, k)));
       const auto found = edge_points_.find(twin < 0 ? h : std::min(h, twin));
       if (found != edge_points_.end()) {
         std::vector<std::pair<double, int>> along;
         for (const int q : found->second)
-          if (!mesh_.target_vertex[at(q)])
-            along.emplace_back(in_face(target_, mesh_.points[at(q)], f).bary[(k + 1) % 3], q);
+          if (!mesh_.target_vertex[idx(q)])
+            along.emplace_back(in_face(target_, mesh_.points[idx(q)], f).bary[(k + 1) % 3], q);
         std::sort(along.begin(), along.end());
         along.erase(std::unique(along.begin(), along.end()), along.end());
         for (const auto& entry : along) loop.push_back(entry.second);
       }
       const std::uint8_t mark =
-          twin >= 0 && filled_[at(face_of(twin))] ? kTargetEdge | kSeam : kTargetEdge;
+          twin >= 0 && filled_[idx(face_of(twin))] ? kTargetEdge | kSeam : kTargetEdge;
       side_marks.resize(loop.size(), static_cast<std::uint8_t>(mark | kExact));
     }
     std::vector<int> wedges;

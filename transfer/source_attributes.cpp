@@ -4,14 +4,11 @@
 #include <array>
 #include <cmath>
 
+#include "core/index.hpp"
 #include "transfer/image_size.hpp"
 
 namespace crosspatch {
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 std::array<const TextureRef*, 5> textures(const Material& m) {
   return {&m.base_color, &m.metallic_roughness, &m.normal, &m.occlusion, &m.emissive};
@@ -20,15 +17,15 @@ std::array<const TextureRef*, 5> textures(const Material& m) {
 std::vector<int> polygon_of_corner(const PolygonSoup& soup) {
   std::vector<int> polygon(soup.corner_vertex.size());
   for (int p = 0; p < soup.polygon_count(); ++p)
-    for (int c = soup.polygon_begin[at(p)]; c < soup.polygon_begin[at(p + 1)]; ++c)
-      polygon[at(c)] = p;
+    for (int c = soup.polygon_begin[idx(p)]; c < soup.polygon_begin[idx(p + 1)]; ++c)
+      polygon[idx(c)] = p;
   return polygon;
 }
 
 /// A texture transform scales UVs before it turns them; under a turn either axis may meet either
 /// side of the image, so the larger product is taken.
 Vector2d texels_per_unit(const PolygonSoup& soup, const TextureRef& t) {
-  const auto size = image_size(soup.images[at(t.image)]);
+  const auto size = image_size(soup.images[idx(t.image)]);
   if (!size) return Vector2d::Zero();
   const Vector2d texels(size->width, size->height);
   if (!t.transform) return texels;
@@ -39,11 +36,11 @@ Vector2d texels_per_unit(const PolygonSoup& soup, const TextureRef& t) {
 
 std::vector<Vector2d> texel_table(const PolygonSoup& soup, int uv_sets, int default_texels) {
   const int materials = static_cast<int>(soup.materials.size());
-  std::vector<Vector2d> table(at((materials + 1) * uv_sets), Vector2d::Zero());
+  std::vector<Vector2d> table(idx((materials + 1) * uv_sets), Vector2d::Zero());
   for (int m = 0; m < materials; ++m)
-    for (const TextureRef* t : textures(soup.materials[at(m)]))
+    for (const TextureRef* t : textures(soup.materials[idx(m)]))
       if (t->image >= 0 && t->uv_set < uv_sets) {
-        Vector2d& entry = table[at((m + 1) * uv_sets + t->uv_set)];
+        Vector2d& entry = table[idx((m + 1) * uv_sets + t->uv_set)];
         entry = entry.cwiseMax(texels_per_unit(soup, *t));
       }
   for (Vector2d& entry : table)
@@ -53,7 +50,7 @@ std::vector<Vector2d> texel_table(const PolygonSoup& soup, int uv_sets, int defa
 
 bool needs_uv(const PolygonSoup& soup, int material, int set) {
   if (material < 0) return false;
-  const auto used = textures(soup.materials[at(material)]);
+  const auto used = textures(soup.materials[idx(material)]);
   return std::any_of(used.begin(), used.end(), [&](const TextureRef* t) {
     return t->image >= 0 && t->uv_set == set;
   });
@@ -63,28 +60,28 @@ void gather_corners(const AttributedMesh& source, SourceAttributes& a) {
   const PolygonSoup& soup = source.soup;
   const int faces = source.prepared.mesh.face_count();
   const std::vector<int> polygon = polygon_of_corner(soup);
-  a.values.assign(at(3 * faces * a.width), 0.0);
-  a.material.assign(at(faces), -1);
-  a.usable.assign(at(faces), true);
+  a.values.assign(idx(3 * faces * a.width), 0.0);
+  a.material.assign(idx(faces), -1);
+  a.usable.assign(idx(faces), true);
   for (int f = 0; f < faces; ++f) {
-    const int first = source.prepared.numbering.soup_corner[at(3 * f)];
+    const int first = source.prepared.numbering.soup_corner[idx(3 * f)];
     if (!soup.polygon_material.empty())
-      a.material[at(f)] = soup.polygon_material[at(polygon[at(first)])];
+      a.material[idx(f)] = soup.polygon_material[idx(polygon[idx(first)])];
     for (int k = 0; k < 3; ++k) {
-      const int corner = source.prepared.numbering.soup_corner[at(3 * f + k)];
-      double* out = &a.values[at((3 * f + k) * a.width)];
+      const int corner = source.prepared.numbering.soup_corner[idx(3 * f + k)];
+      double* out = &a.values[idx((3 * f + k) * a.width)];
       for (int s = 0; s < a.uv_sets; ++s) {
-        const Vector2d uv = soup.uv_sets[at(s)][at(corner)];
+        const Vector2d uv = soup.uv_sets[idx(s)][idx(corner)];
         if (uv.allFinite()) {
           out[2 * s] = uv[0];
           out[2 * s + 1] = uv[1];
-        } else if (needs_uv(soup, a.material[at(f)], s)) {
-          a.usable[at(f)] = false;
+        } else if (needs_uv(soup, a.material[idx(f)], s)) {
+          a.usable[idx(f)] = false;
         }
       }
       if (a.colors)
         for (int c = 0; c < 4; ++c)
-          out[2 * a.uv_sets + c] = double(soup.corner_colors[at(corner)][at(c)]);
+          out[2 * a.uv_sets + c] = double(soup.corner_colors[idx(corner)][idx(c)]);
     }
   }
 }
@@ -93,7 +90,7 @@ bool agree(const SourceAttributes& a, int corner, int other) {
   // Finer than the spacing of single-precision UVs in [0.5, 1), so that only equal UVs agree.
   constexpr double kEqual = 1e-8;
   for (int i = 0; i < a.width; ++i)
-    if (std::abs(a.values[at(corner * a.width + i)] - a.values[at(other * a.width + i)]) > kEqual)
+    if (std::abs(a.values[idx(corner * a.width + i)] - a.values[idx(other * a.width + i)]) > kEqual)
       return false;
   return true;
 }
@@ -108,19 +105,19 @@ SourceAttributes source_attributes(const AttributedMesh& source, int default_tex
   a.texels = texel_table(source.soup, a.uv_sets, default_texels);
   gather_corners(source, a);
   const TriangleMesh& mesh = source.prepared.mesh;
-  a.continuous.assign(at(mesh.halfedge_count()), false);
+  a.continuous.assign(idx(mesh.halfedge_count()), false);
   for (int h = 0; h < mesh.halfedge_count(); ++h) {
-    const int twin = mesh.twin[at(h)];
+    const int twin = mesh.twin[idx(h)];
     if (twin < 0) continue;
     const int f = face_of(h), g = face_of(twin);
-    a.continuous[at(h)] = a.material[at(f)] == a.material[at(g)] && a.usable[at(f)] &&
-                          a.usable[at(g)] && agree(a, h, next(twin)) && agree(a, next(h), twin);
+    a.continuous[idx(h)] = a.material[idx(f)] == a.material[idx(g)] && a.usable[idx(f)] &&
+                           a.usable[idx(g)] && agree(a, h, next(twin)) && agree(a, next(h), twin);
   }
   return a;
 }
 
 void evaluate(const SourceAttributes& a, const SurfacePoint& p, double* out) {
-  const double* corner = a.values.data() + at(3 * p.face * a.width);
+  const double* corner = a.values.data() + idx(3 * p.face * a.width);
   for (int i = 0; i < a.width; ++i)
     out[i] = p.bary[0] * corner[i] + p.bary[1] * corner[a.width + i] +
              p.bary[2] * corner[2 * a.width + i];
@@ -132,7 +129,7 @@ AttributeError difference(const SourceAttributes& attributes,
                           const double* b) {
   AttributeError error;
   for (int s = 0; s < attributes.uv_sets; ++s) {
-    const Vector2d& texels = attributes.texels[at((material + 1) * attributes.uv_sets + s)];
+    const Vector2d& texels = attributes.texels[idx((material + 1) * attributes.uv_sets + s)];
     const Vector2d d(a[2 * s] - b[2 * s], a[2 * s + 1] - b[2 * s + 1]);
     error.uv_texels = std::max(error.uv_texels, d.cwiseProduct(texels).norm());
   }

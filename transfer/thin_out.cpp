@@ -2,15 +2,12 @@
 #include <optional>
 #include <unordered_map>
 
+#include "core/index.hpp"
 #include "transfer/overlay_mesh.hpp"
 #include "transfer/triangulate.hpp"
 
 namespace crosspatch {
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 using Triangle = OverlayMesh::Triangle;
 
@@ -55,7 +52,7 @@ class Thinner {
     for (int pass = 0; pass < 6 && changed; ++pass) {
       changed = false;
       for (int point = 0; point < static_cast<int>(incident_.size()); ++point)
-        if (!mesh_.target_vertex[at(point)] && !incident_[at(point)].empty())
+        if (!mesh_.target_vertex[idx(point)] && !incident_[idx(point)].empty())
           changed = remove(point) || changed;
     }
     AttributeError worst;
@@ -69,34 +66,34 @@ class Thinner {
   }
 
  private:
-  int point_of(int wedge) const { return mesh_.wedge_point[at(wedge)]; }
+  int point_of(int wedge) const { return mesh_.wedge_point[idx(wedge)]; }
 
   void enlist(int t) {
-    for (const int w : mesh_.triangles[at(t)].wedge) incident_[at(point_of(w))].push_back(t);
+    for (const int w : mesh_.triangles[idx(t)].wedge) incident_[idx(point_of(w))].push_back(t);
   }
 
   void retire(int t) {
-    mesh_.triangles[at(t)].alive = false;
-    for (const int w : mesh_.triangles[at(t)].wedge) std::erase(incident_[at(point_of(w))], t);
-    samples_[at(t)].clear();
+    mesh_.triangles[idx(t)].alive = false;
+    for (const int w : mesh_.triangles[idx(t)].wedge) std::erase(incident_[idx(point_of(w))], t);
+    samples_[idx(t)].clear();
   }
 
   std::size_t corner_at(int t, int point) const {
     std::size_t k = 0;
-    while (point_of(mesh_.triangles[at(t)].wedge[k]) != point) ++k;
+    while (point_of(mesh_.triangles[idx(t)].wedge[k]) != point) ++k;
     return k;
   }
 
   /// The star of `point`, cut at sides along the target's edges; none where the point must stay.
   std::optional<std::vector<Sector>> sectors(int point) const {
-    const std::vector<int>& star = incident_[at(point)];
+    const std::vector<int>& star = incident_[idx(point)];
     // Hubs are not worth the cubic ear clipping.
     constexpr std::size_t kLargestStar = 48;
     if (star.size() > kLargestStar) return std::nullopt;
     std::unordered_map<int, int> leaving;  // by point: the triangle whose spoke point -> it
     std::vector<int> starts;
     for (const int t : star) {
-      const Triangle& triangle = mesh_.triangles[at(t)];
+      const Triangle& triangle = mesh_.triangles[idx(t)];
       const std::size_t k = corner_at(t, point);
       const std::uint8_t out = triangle.side[k];
       if ((out & kTargetEdge) != 0) starts.push_back(t);
@@ -129,14 +126,14 @@ class Thinner {
                              const std::unordered_map<int, int>& leaving) const {
     Sector sector;
     const std::size_t k0 = corner_at(first, point);
-    const std::uint8_t first_mark = mesh_.triangles[at(first)].side[k0];
-    sector.rim.push_back(mesh_.triangles[at(first)].wedge[(k0 + 1) % 3]);
+    const std::uint8_t first_mark = mesh_.triangles[idx(first)].side[k0];
+    sector.rim.push_back(mesh_.triangles[idx(first)].wedge[(k0 + 1) % 3]);
     for (int t = first;;) {
-      const Triangle& triangle = mesh_.triangles[at(t)];
+      const Triangle& triangle = mesh_.triangles[idx(t)];
       const std::size_t k = corner_at(t, point);
       if (triangle.wedge[(k + 1) % 3] != sector.rim.back() ||
-          triangle.wedge[k] != mesh_.triangles[at(first)].wedge[k0] ||
-          triangle.target_face != mesh_.triangles[at(first)].target_face)
+          triangle.wedge[k] != mesh_.triangles[idx(first)].wedge[k0] ||
+          triangle.target_face != mesh_.triangles[idx(first)].target_face)
         return std::nullopt;
       sector.triangles.push_back(t);
       sector.rim.push_back(triangle.wedge[(k + 2) % 3]);
@@ -157,18 +154,18 @@ class Thinner {
   }
 
   Vector3d bary(int wedge, int face) const {
-    return in_face(target_, mesh_.points[at(point_of(wedge))], face).bary;
+    return in_face(target_, mesh_.points[idx(point_of(wedge))], face).bary;
   }
 
   /// Cuts the sector's polygon anew without its point; none where that cannot be had within the
   /// tolerances.
   std::optional<Patch> fill(int point, const Sector& sector) const {
-    const Triangle& pattern = mesh_.triangles[at(sector.triangles.front())];
+    const Triangle& pattern = mesh_.triangles[idx(sector.triangles.front())];
     const int face = pattern.target_face;
     std::vector<int> loop = sector.rim;
     std::vector<std::uint8_t> marks;
     for (const int t : sector.triangles)
-      marks.push_back(mesh_.triangles[at(t)].side[(corner_at(t, point) + 1) % 3]);
+      marks.push_back(mesh_.triangles[idx(t)].side[(corner_at(t, point) + 1) % 3]);
     if (sector.closed)
       loop.pop_back();
     else
@@ -186,8 +183,8 @@ class Thinner {
     for (const auto& c : cut) {
       Triangle triangle = pattern;
       for (std::size_t k = 0; k < 3; ++k) {
-        triangle.wedge[k] = loop[at(c[k])];
-        triangle.side[k] = c[(k + 1) % 3] == (c[k] + 1) % n ? marks[at(c[k])] : std::uint8_t{0};
+        triangle.wedge[k] = loop[idx(c[k])];
+        triangle.side[k] = c[(k + 1) % 3] == (c[k] + 1) % n ? marks[idx(c[k])] : std::uint8_t{0};
       }
       patch.triangles.push_back(triangle);
     }
@@ -199,14 +196,14 @@ class Thinner {
   std::vector<Sample> gather(int point, const Sector& sector) const {
     std::vector<Sample> all;
     for (const int t : sector.triangles) {
-      const auto& own = samples_[at(t)];
+      const auto& own = samples_[idx(t)];
       all.insert(all.end(), own.begin(), own.end());
-      const Triangle& triangle = mesh_.triangles[at(t)];
+      const Triangle& triangle = mesh_.triangles[idx(t)];
       const std::size_t k = corner_at(t, point);
       if ((triangle.side[k] & kExact) != 0)
         all.push_back({triangle.wedge[k], triangle.wedge[(k + 1) % 3]});
     }
-    const Triangle& first = mesh_.triangles[at(sector.triangles.front())];
+    const Triangle& first = mesh_.triangles[idx(sector.triangles.front())];
     const int wedge = first.wedge[corner_at(sector.triangles.front(), point)];
     all.push_back({wedge, wedge});
     return all;
@@ -214,7 +211,7 @@ class Thinner {
 
   /// Hands each sample to the new triangle that holds it; false if one is out of tolerance.
   bool distribute(const std::vector<Sample>& all, int face, Patch& patch) const {
-    const std::size_t width = at(attributes_.width);
+    const std::size_t width = idx(attributes_.width);
     std::vector<double> exact(width), linear(width);
     std::vector<std::array<Vector3d, 3>> corners;
     for (const Triangle& t : patch.triangles)
@@ -234,7 +231,7 @@ class Thinner {
       }
       const Triangle& t = patch.triangles[holder];
       for (std::size_t i = 0; i < width; ++i) {
-        const auto value = [&](int wedge) { return mesh_.attributes[at(wedge) * width + i]; };
+        const auto value = [&](int wedge) { return mesh_.attributes[idx(wedge) * width + i]; };
         exact[i] = (value(s.a) + value(s.b)) / 2;
         linear[i] = weights[0] * value(t.wedge[0]) + weights[1] * value(t.wedge[1]) +
                     weights[2] * value(t.wedge[2]);

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <set>
 
+#include "core/index.hpp"
 #include "shapes.hpp"
 #include "transfer/surfaces.hpp"
 
@@ -13,10 +14,6 @@ namespace crosspatch {
 namespace {
 
 using shapes::Surface;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 double double_area(const TexturedMesh& mesh, int t) {
   const Vector3d a = mesh.positions.row(mesh.triangles(t, 0)).transpose();
@@ -62,7 +59,7 @@ Vector2d exact_uv(const Surface& source, const Vector2d& p) {
   }
   const Vector3d b = shapes::planar_barycentric(mesh, best, p);
   const auto& uv = source.soup.uv_sets[0];
-  return b[0] * uv[at(3 * best)] + b[1] * uv[at(3 * best + 1)] + b[2] * uv[at(3 * best + 2)];
+  return b[0] * uv[idx(3 * best)] + b[1] * uv[idx(3 * best + 1)] + b[2] * uv[idx(3 * best + 2)];
 }
 
 /// Flat triangles of `mesh` as a mesh of their own, to locate points in.
@@ -102,12 +99,12 @@ TEST(CarryTexture, IdentityWithASeamKeepsTrianglesAndUvs) {
     for (int k = 0; k < 3; ++k) {
       const Vector3d p = out.positions.row(out.triangles(t, k)).transpose();
       int corner = 0;
-      while (mesh.position(mesh.F(out.target_face[at(t)], corner)) != p) ASSERT_LT(++corner, 3);
-      const int h = 3 * out.target_face[at(t)] + corner;
-      seen.emplace(out.target_face[at(t)], corner);
-      EXPECT_LT((out.uv_sets[0][at(3 * t + k)] - sphere.soup.uv_sets[0][at(h)]).norm(), 1e-8);
+      while (mesh.position(mesh.F(out.target_face[idx(t)], corner)) != p) ASSERT_LT(++corner, 3);
+      const int h = 3 * out.target_face[idx(t)] + corner;
+      seen.emplace(out.target_face[idx(t)], corner);
+      EXPECT_LT((out.uv_sets[0][idx(3 * t + k)] - sphere.soup.uv_sets[0][idx(h)]).norm(), 1e-8);
     }
-  EXPECT_EQ(seen.size(), at(mesh.halfedge_count()));
+  EXPECT_EQ(seen.size(), idx(mesh.halfedge_count()));
 }
 
 class PlanarTransfer : public testing::TestWithParam<std::pair<int, int>> {
@@ -136,7 +133,7 @@ TEST_P(PlanarTransfer, SurfaceStaysAndMeshIsConforming) {
     EXPECT_GT(double_area(out, t), 0);
     for (int k = 0; k < 3; ++k) {
       const Vector3d p = out.positions.row(out.triangles(t, k)).transpose();
-      EXPECT_GT(shapes::planar_barycentric(target, out.target_face[at(t)], p.head<2>()).minCoeff(),
+      EXPECT_GT(shapes::planar_barycentric(target, out.target_face[idx(t)], p.head<2>()).minCoeff(),
                 -1e-9);  // rounding of the barycentric round trip
     }
   }
@@ -145,7 +142,7 @@ TEST_P(PlanarTransfer, SurfaceStaysAndMeshIsConforming) {
   std::set<std::pair<int, int>> sides;
   for (int t = 0; t < out.triangle_count(); ++t)
     for (int k = 0; k < 3; ++k) sides.emplace(out.triangles(t, k), out.triangles(t, (k + 1) % 3));
-  EXPECT_EQ(sides.size(), at(3 * out.triangle_count()));
+  EXPECT_EQ(sides.size(), idx(3 * out.triangle_count()));
   for (const auto& [i, j] : sides)
     if (!sides.contains({j, i})) outline += (out.positions.row(i) - out.positions.row(j)).norm();
   EXPECT_NEAR(outline, 4, 1e-9);
@@ -156,9 +153,9 @@ TEST_P(PlanarTransfer, NoTriangleTouchesTwoIslands) {
   ASSERT_TRUE(carried);
   const auto& uv = carried->mesh.uv_sets[0];
   for (int t = 0; t < carried->mesh.triangle_count(); ++t) {
-    const bool left = uv[at(3 * t)][0] < 0.5;
-    EXPECT_EQ(left, uv[at(3 * t + 1)][0] < 0.5);
-    EXPECT_EQ(left, uv[at(3 * t + 2)][0] < 0.5);
+    const bool left = uv[idx(3 * t)][0] < 0.5;
+    EXPECT_EQ(left, uv[idx(3 * t + 1)][0] < 0.5);
+    EXPECT_EQ(left, uv[idx(3 * t + 2)][0] < 0.5);
   }
   EXPECT_GT(carried->statistics.seam_cuts, 0);
 }
@@ -177,7 +174,7 @@ TEST_P(PlanarTransfer, UvIsWithinHalfATexelOfTheMap) {
       const Vector3d b = shapes::planar_barycentric(out, t, p);
       if (b.minCoeff() < 1e-9) continue;
       const Vector2d carried_uv =
-          b[0] * uv[at(3 * t)] + b[1] * uv[at(3 * t + 1)] + b[2] * uv[at(3 * t + 2)];
+          b[0] * uv[idx(3 * t)] + b[1] * uv[idx(3 * t + 1)] + b[2] * uv[idx(3 * t + 2)];
       ++points;
       beyond += (carried_uv - exact_uv(source_, p)).norm() * 256 > 0.5 ? 1 : 0;
       break;
@@ -203,16 +200,16 @@ TEST_P(PlanarTransfer, ToleranceTradesTrianglesForAccuracy) {
   for (int p = 0; p < map_.polygon_count(); ++p) {
     double least = 1, most = 0;
     for (int k = 0; k < 3; ++k) {
-      const double u = source_.soup.uv_sets[0][at(3 * map_.source_face[at(p)] + k)][0];
+      const double u = source_.soup.uv_sets[0][idx(3 * map_.source_face[idx(p)] + k)][0];
       least = std::min(least, u);
       most = std::max(most, u);
     }
-    seam_faces.insert(2 * map_.target_face[at(p)] + (least < 0.5 ? 0 : 1));
+    seam_faces.insert(2 * map_.target_face[idx(p)] + (least < 0.5 ? 0 : 1));
   }
   const auto coarse =
       carry_texture(source_.view(), target_.view(), map_, {.uv_tolerance_texels = 1e6});
-  std::vector<int> pieces(at(target_.prepared.mesh.face_count()), 0);
-  for (const int f : coarse->mesh.target_face) ++pieces[at(f)];
+  std::vector<int> pieces(idx(target_.prepared.mesh.face_count()), 0);
+  for (const int f : coarse->mesh.target_face) ++pieces[idx(f)];
   const TriangleMesh& target = target_.prepared.mesh;
   const auto both = [&](int f) {
     return seam_faces.contains(2 * f) && seam_faces.contains(2 * f + 1);
@@ -220,11 +217,11 @@ TEST_P(PlanarTransfer, ToleranceTradesTrianglesForAccuracy) {
   for (int f = 0; f < target.face_count(); ++f) {
     bool near = both(f);
     for (int k = 0; k < 3; ++k) {
-      const int twin = target.twin[at(3 * f + k)];
+      const int twin = target.twin[idx(3 * f + k)];
       near = near || (twin >= 0 && both(face_of(twin)));
     }
     if (!near) {
-      EXPECT_EQ(pieces[at(f)], 1);
+      EXPECT_EQ(pieces[idx(f)], 1);
     }
   }
 }
@@ -246,13 +243,13 @@ TEST(CarryTexture, UnfilledFaceBecomesUnmappedWithoutGaps) {
   torn.target_face.clear();
   bool taken = false;
   for (int p = 0; p < map.polygon_count(); ++p) {
-    if (map.target_face[at(p)] == face && !std::exchange(taken, true)) continue;
+    if (map.target_face[idx(p)] == face && !std::exchange(taken, true)) continue;
     torn.corner.insert(torn.corner.end(),
-                       map.corner.begin() + map.polygon_begin[at(p)],
-                       map.corner.begin() + map.polygon_begin[at(p + 1)]);
+                       map.corner.begin() + map.polygon_begin[idx(p)],
+                       map.corner.begin() + map.polygon_begin[idx(p + 1)]);
     torn.polygon_begin.push_back(static_cast<int>(torn.corner.size()));
-    torn.source_face.push_back(map.source_face[at(p)]);
-    torn.target_face.push_back(map.target_face[at(p)]);
+    torn.source_face.push_back(map.source_face[idx(p)]);
+    torn.target_face.push_back(map.target_face[idx(p)]);
   }
   const auto whole = carry_texture(source.view(), target.view(), map);
   const auto carried = carry_texture(source.view(), target.view(), torn);
@@ -263,8 +260,8 @@ TEST(CarryTexture, UnfilledFaceBecomesUnmappedWithoutGaps) {
   EXPECT_NEAR(carried->statistics.coverage, 1 - lost, 1e-9);  // of area 1
   EXPECT_NEAR(area_of(carried->mesh), 1, 1e-9);
   for (int t = 0; t < carried->mesh.triangle_count(); ++t)
-    EXPECT_EQ(carried->mesh.materials[at(carried->mesh.material[at(t)])].name == "unmapped",
-              carried->mesh.target_face[at(t)] == face);
+    EXPECT_EQ(carried->mesh.materials[idx(carried->mesh.material[idx(t)])].name == "unmapped",
+              carried->mesh.target_face[idx(t)] == face);
   EXPECT_EQ(shapes::loose_sides(carried->mesh), shapes::loose_sides(whole->mesh));
 }
 
@@ -272,10 +269,10 @@ TEST(CarryTexture, MaterialsAreCutApartAndMissingUvsAreUnmapped) {
   Surface source = two_islands(6, 5, 256);
   const int faces = source.prepared.mesh.face_count();
   source.soup.materials.emplace_back().name = "horn";
-  for (int f = faces / 2; f < faces; ++f) source.soup.polygon_material[at(f)] = 1;
+  for (int f = faces / 2; f < faces; ++f) source.soup.polygon_material[idx(f)] = 1;
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  source.soup.uv_sets[0][7] = {nan, nan};                  // face 2, whose material has a texture
-  source.soup.uv_sets[0][at(3 * faces - 1)] = {nan, nan};  // the last face's has none
+  source.soup.uv_sets[0][7] = {nan, nan};                   // face 2, whose material has a texture
+  source.soup.uv_sets[0][idx(3 * faces - 1)] = {nan, nan};  // the last face's has none
   const Surface target = shapes::surface_of(shapes::jittered_grid(shapes::grid(3), 3, 6));
   const SurfaceMap map = shapes::planar_overlay(source.prepared.mesh, target.prepared.mesh);
   const auto carried = carry_texture(source.view(), target.view(), map);
@@ -284,7 +281,7 @@ TEST(CarryTexture, MaterialsAreCutApartAndMissingUvsAreUnmapped) {
   ASSERT_TRUE(validate(out)) << validate(out).error().message;
   std::map<std::string, double> area;
   for (int t = 0; t < out.triangle_count(); ++t)
-    area[out.materials[at(out.material[at(t)])].name] += double_area(out, t) / 2;
+    area[out.materials[idx(out.material[idx(t)])].name] += double_area(out, t) / 2;
   const Eigen::VectorXd areas = face_areas(source.prepared.mesh);
   EXPECT_NEAR(area["unmapped"], areas[2], 1e-9);
   EXPECT_NEAR(area["horn"], areas.tail(faces - faces / 2).sum(), 1e-9);
@@ -306,7 +303,7 @@ TEST(CarryTexture, VertexColoursAreCarriedLinearly) {
   EXPECT_EQ(carried->mesh.materials.at(0).name, "default");
   for (int t = 0; t < carried->mesh.triangle_count(); ++t)
     for (int k = 0; k < 3; ++k) {
-      const auto& rgba = carried->mesh.colors[at(3 * t + k)];
+      const auto& rgba = carried->mesh.colors[idx(3 * t + k)];
       const auto p = carried->mesh.positions.row(carried->mesh.triangles(t, k));
       EXPECT_NEAR(rgba[0], p[0], 1e-6);  // single precision
       EXPECT_NEAR(rgba[1], p[1], 1e-6);

@@ -1,0 +1,243 @@
+#include "transfer/gltf_write.hpp"
+
+#include <fmt/format.h>
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <sstream>
+#include <tuple>
+
+#include "core/index.hpp"
+#include "transfer/vertex_buffer.hpp"
+
+namespace crosspatch {
+namespace {
+
+class Writer {
+ public:
+  explicit Writer(const TexturedMesh& mesh) : mesh_(mesh) {
+    model_.asset.version = "2.0";
+    model_.asset.generator = "crosspatch";
+    model_.buffers.resize(1);
+  }
+
+  Result<std::string> write() {
+    tinygltf::Mesh out;
+    for (int m = 0; m < static_cast<int>(mesh_.materials.size()); ++m) {
+      const Material& material = mesh_.materials[idx(m)];
+      const VertexBuffer vertices =
+          weld_corners(mesh_, m, material.normal.image >= 0 ? material.normal.uv_set : -1);
+      if (vertices.indices.empty()) continue;
+      if (Status s = add_material(material); !s) return tl::unexpected(s.error());
+      out.primitives.push_back(primitive(vertices));
+    }
+    if (out.primitives.empty())
+      return fail(ErrorCode::kOutput, "GLB: there is no triangle to write");
+    model_.meshes.push_back(std::move(out));
+    add_scene();
+    // Lengths are 32-bit in GLB; the JSON beside the buffer stays below 64 MiB for any real mesh.
+    constexpr std::size_t kLargestBuffer = (std::size_t{1} << 32) - (std::size_t{1} << 26);
+    const std::size_t size = model_.buffers[0].data.size();
+    if (size > kLargestBuffer)
+      return fail(ErrorCode::kOutput,
+                  fmt::format("GLB: {} bytes of data, at most {} fit", size, kLargestBuffer));
+    std::ostringstream stream;
+    tinygltf::TinyGLTF writer;
+    if (!writer.WriteGltfSceneToStream(&model_, stream, /*prettyPrint=*/false, /*binary=*/true))
+      return fail(ErrorCode::kOutput, "GLB: the encoder failed");
+    return stream.str();
+  }
+
+ private:
+  /// Appends bytes to the buffer and returns their view. `target` 0: not for vertices or indices.
+  int add_view(const void* data, std::size_t size, int target) {
+    auto& bytes = model_.buffers[0].data;
+    bytes.resize((bytes.size() + 3) / 4 * 4);
+    tinygltf::BufferView view;
+    view.buffer = 0;
+    view.byteOffset = bytes.size();
+    view.byteLength = size;
+    view.target = target;
+    const auto* begin = static_cast<const unsigned char*>(data);
+    bytes.insert(bytes.end(), begin, begin + size);
+    bytes.resize((bytes.size() + 3) / 4 * 4);
+    model_.bufferViews.push_back(view);
+    return static_cast<int>(model_.bufferViews.size()) - 1;
+  }
+
+  int add_accessor(int view, int component, int type, std::size_t count) {
+    tinygltf::Accessor accessor;
+    accessor.bufferView = view;
+    accessor.componentType = component;
+    accessor.type = type;
+    accessor.count = count;
+    model_.accessors.push_back(accessor);
+    return static_cast<int>(model_.accessors.size()) - 1;
+  }
+
+  template <std::size_t N>
+  int add_attribute(const std::vector<std::array<float, N>>& values, int type) {
+    const int view =
+        add_view(values.data(), values.size() * sizeof values[0], TINYGLTF_TARGET_ARRAY_BUFFER);
+    return add_accessor(view, TINYGLTF_COMPONENT_TYPE_FLOAT, type, values.size());
+  }
+
+  int add_positions(const std::vector<std::array<float, 3>>& positions) {
+    const int index = add_attribute(positions, TINYGLTF_TYPE_VEC3);
+    auto& accessor = model_.accessors[idx(index)];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [least, most] = std::minmax_element(
+          positions.begin(), positions.end(), [k](const auto& a, const auto& b) {
+            return a[k] < b[k];
+          });
+      accessor.minValues.push_back(double((*least)[k]));
+      accessor.maxValues.push_back(double((*most)[k]));
+    }
+    return index;
+  }
+
+  int add_indices(const VertexBuffer& vertices) {
+    const auto add = [&](const auto& values, int component) {
+      const int view = add_view(
+          values.data(), values.size() * sizeof values[0], TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+      return add_accessor(view, component, TINYGLTF_TYPE_SCALAR, values.size());
+    };
+    // 65535 itself restarts a primitive.
+    if (vertices.positions.size() > std::numeric_limits<std::uint16_t>::max())
+      return add(vertices.indices, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
+    std::vector<std::uint16_t> narrow;
+    for (const std::uint32_t i : vertices.indices) narrow.push_back(static_cast<std::uint16_t>(i));
+    return add(narrow, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT);
+  }
+
+  tinygltf::Primitive primitive(const VertexBuffer& vertices) {
+    tinygltf::Primitive p;
+    p.mode = TINYGLTF_MODE_TRIANGLES;
+    p.material = static_cast<int>(model_.materials.size()) - 1;
+    p.attributes["POSITION"] = add_positions(vertices.positions);
+    p.attributes["NORMAL"] = add_attribute(vertices.normals, TINYGLTF_TYPE_VEC3);
+    if (!vertices.tangents.empty())
+      p.attributes["TANGENT"] = add_attribute(vertices.tangents, TINYGLTF_TYPE_VEC4);
+    for (std::size_t s = 0; s < vertices.uv_sets.size(); ++s)
+      p.attributes[fmt::format("TEXCOORD_{}", s)] =
+          add_attribute(vertices.uv_sets[s], TINYGLTF_TYPE_VEC2);
+    if (!vertices.colors.empty())
+      p.attributes["COLOR_0"] = add_attribute(vertices.colors, TINYGLTF_TYPE_VEC4);
+    p.indices = add_indices(vertices);
+    return p;
+  }
+
+  Result<int> add_image(int image) {
+    if (const auto found = image_.find(image); found != image_.end()) return found->second;
+    const ImageFile& file = mesh_.images[idx(image)];
+    if (file.mime_type != "image/png" && file.mime_type != "image/jpeg")
+      return fail(
+          ErrorCode::kOutput,
+          fmt::format("image \"{}\" is neither PNG nor JPEG: a GLB cannot hold it unchanged",
+                      file.name));
+    tinygltf::Image out;
+    out.name = file.name;
+    out.mimeType = file.mime_type;
+    out.bufferView = add_view(file.bytes.data(), file.bytes.size(), 0);
+    model_.images.push_back(std::move(out));
+    return image_[image] = static_cast<int>(model_.images.size()) - 1;
+  }
+
+  int add_sampler(const TextureRef& ref) {
+    tinygltf::Sampler sampler;
+    sampler.wrapS = ref.wrap_s;
+    sampler.wrapT = ref.wrap_t;
+    sampler.minFilter = ref.min_filter;
+    sampler.magFilter = ref.mag_filter;
+    const auto [entry, fresh] =
+        sampler_.try_emplace({ref.wrap_s, ref.wrap_t, ref.min_filter, ref.mag_filter},
+                             static_cast<int>(model_.samplers.size()));
+    if (fresh) model_.samplers.push_back(sampler);
+    return entry->second;
+  }
+
+  Result<int> add_texture(const TextureRef& ref) {
+    const auto image = add_image(ref.image);
+    if (!image) return image;
+    tinygltf::Texture texture;
+    texture.source = *image;
+    texture.sampler = add_sampler(ref);
+    const auto [entry, fresh] = texture_.try_emplace({texture.source, texture.sampler},
+                                                     static_cast<int>(model_.textures.size()));
+    if (fresh) model_.textures.push_back(texture);
+    return entry->second;
+  }
+
+  template <class Info>
+  Status set_texture(const TextureRef& ref, Info& info) {
+    if (ref.image < 0) return {};
+    const auto texture = add_texture(ref);
+    if (!texture) return tl::unexpected(texture.error());
+    info.index = *texture;
+    info.texCoord = ref.uv_set;
+    if (!ref.transform) return {};
+    const TextureTransform& t = *ref.transform;
+    tinygltf::Value::Object object;
+    const auto pair = [](const Vector2d& v) {
+      return tinygltf::Value(tinygltf::Value::Array{tinygltf::Value(v[0]), tinygltf::Value(v[1])});
+    };
+    object["offset"] = pair(t.offset);
+    object["rotation"] = tinygltf::Value(t.rotation_radians);
+    object["scale"] = pair(t.scale);
+    info.extensions["KHR_texture_transform"] = tinygltf::Value(object);
+    model_.extensionsUsed = {"KHR_texture_transform"};
+    return {};
+  }
+
+  Status add_material(const Material& m) {
+    tinygltf::Material out;
+    out.name = m.name;
+    auto& pbr = out.pbrMetallicRoughness;
+    pbr.baseColorFactor.assign(m.base_color_factor.begin(), m.base_color_factor.end());
+    pbr.metallicFactor = m.metallic_factor;
+    pbr.roughnessFactor = m.roughness_factor;
+    out.emissiveFactor.assign(m.emissive_factor.begin(), m.emissive_factor.end());
+    out.alphaMode = m.alpha_mode;
+    out.alphaCutoff = m.alpha_cutoff;
+    out.doubleSided = m.double_sided;
+    out.normalTexture.scale = m.normal.strength;
+    out.occlusionTexture.strength = m.occlusion.strength;
+    if (Status s = set_texture(m.base_color, pbr.baseColorTexture); !s) return s;
+    if (Status s = set_texture(m.metallic_roughness, pbr.metallicRoughnessTexture); !s) return s;
+    if (Status s = set_texture(m.normal, out.normalTexture); !s) return s;
+    if (Status s = set_texture(m.occlusion, out.occlusionTexture); !s) return s;
+    if (Status s = set_texture(m.emissive, out.emissiveTexture); !s) return s;
+    model_.materials.push_back(std::move(out));
+    return {};
+  }
+
+  void add_scene() {
+    tinygltf::Node node;
+    node.mesh = 0;
+    if (!mesh_.node_transform.isIdentity(0))  // column-major in both
+      node.matrix.assign(mesh_.node_transform.data(), mesh_.node_transform.data() + 16);
+    model_.nodes.push_back(node);
+    tinygltf::Scene scene;
+    scene.nodes = {0};
+    model_.scenes.push_back(scene);
+    model_.defaultScene = 0;
+  }
+
+  const TexturedMesh& mesh_;
+  tinygltf::Model model_;
+  std::map<int, int> image_;
+  std::map<std::tuple<int, int, int, int>, int> sampler_;
+  std::map<std::pair<int, int>, int> texture_;
+};
+
+}  // namespace
+
+Result<std::string> encode_glb(const TexturedMesh& mesh) {
+  if (Status s = validate(mesh); !s) return tl::unexpected(s.error());
+  return Writer(mesh).write();
+}
+
+}  // namespace crosspatch
