@@ -12,6 +12,7 @@
 #include <map>
 #include <utility>
 
+#include "core/index.hpp"
 #include "param/predicates.hpp"
 
 namespace crosspatch {
@@ -20,16 +21,12 @@ namespace {
 using std::size_t;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-size_t at(int i) {
-  return static_cast<size_t>(i);
-}
-
 Status check_disc(const TriangleMesh& disc, const std::vector<int>& loop) {
   if (euler_characteristic(disc) != 1)
     return fail(ErrorCode::kBadInput,
                 fmt::format("disc: Euler characteristic is {}, not 1", euler_characteristic(disc)));
   size_t boundary = 0;
-  for (int h = 0; h < disc.halfedge_count(); ++h) boundary += disc.twin[at(h)] < 0 ? 1U : 0U;
+  for (int h = 0; h < disc.halfedge_count(); ++h) boundary += disc.twin[idx(h)] < 0 ? 1U : 0U;
   if (boundary != loop.size())
     return fail(
         ErrorCode::kBadInput,
@@ -39,8 +36,8 @@ Status check_disc(const TriangleMesh& disc, const std::vector<int>& loop) {
     const int u = loop[i], v = loop[(i + 1) % loop.size()];
     if (u < 0 || u >= disc.vertex_count())
       return fail(ErrorCode::kBadInput, fmt::format("disc: no boundary vertex {}", u));
-    const int h = disc.out[at(u)];
-    if (disc.twin[at(h)] >= 0 || disc.to(h) != v)
+    const int h = disc.out[idx(u)];
+    if (disc.twin[idx(h)] >= 0 || disc.to(h) != v)
       return fail(ErrorCode::kBadInput,
                   fmt::format("disc: ({}, {}) is no boundary edge, surface on the left", u, v));
   }
@@ -80,13 +77,13 @@ double half_angle_tangent(const Vector3d& a, const Vector3d& b) {
 /// Mean-value weight w(h) of the vertex to(h) as seen from from(h), per half-edge; on a boundary
 /// edge only one of its two triangles counts.
 std::vector<double> mean_value_weights(const TriangleMesh& mesh) {
-  std::vector<double> w(at(mesh.halfedge_count()), 0.0);
+  std::vector<double> w(idx(mesh.halfedge_count()), 0.0);
   for (int h = 0; h < mesh.halfedge_count(); ++h) {
     const Vector3d apex = mesh.position(mesh.from(h));
     const Vector3d a = mesh.position(mesh.to(h)) - apex, b = mesh.position(mesh.tip(h)) - apex;
     const double t = half_angle_tangent(a, b);
-    w[at(h)] += t / a.norm();
-    if (const int g = mesh.twin[at(prev(h))]; g >= 0) w[at(g)] += t / b.norm();
+    w[idx(h)] += t / a.norm();
+    if (const int g = mesh.twin[idx(prev(h))]; g >= 0) w[idx(g)] += t / b.norm();
   }
   return w;
 }
@@ -95,20 +92,20 @@ std::vector<double> mean_value_weights(const TriangleMesh& mesh) {
 /// longer ratios give means that rounding cannot tell from a neighbour. Vertices with a degenerate
 /// triangle fall back to uniform weights of the same size.
 std::vector<double> positive_weights(const TriangleMesh& mesh, TutteWeights kind) {
-  if (kind == TutteWeights::kUniform) return std::vector<double>(at(mesh.halfedge_count()), 1.0);
+  if (kind == TutteWeights::kUniform) return std::vector<double>(idx(mesh.halfedge_count()), 1.0);
   constexpr double kSmallestRatio = 1e-4;
   std::vector<double> w = mean_value_weights(mesh);
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     double largest = 0;
     bool usable = true;
     for_each_outgoing(mesh, v, [&](int h) {
-      usable = usable && std::isfinite(w[at(h)]);
-      largest = std::max(largest, w[at(h)]);
+      usable = usable && std::isfinite(w[idx(h)]);
+      largest = std::max(largest, w[idx(h)]);
     });
     usable = usable && largest > 0 && std::isfinite(1 / largest);
     // Scaling a vertex's weights changes nothing for itself; it lets weights of both ends be added.
     for_each_outgoing(mesh, v, [&](int h) {
-      w[at(h)] = usable ? std::max(w[at(h)] / largest, kSmallestRatio) : 1.0;
+      w[idx(h)] = usable ? std::max(w[idx(h)] / largest, kSmallestRatio) : 1.0;
     });
   }
   return w;
@@ -126,20 +123,20 @@ InnerSystem inner_system(const TriangleMesh& disc,
                          const std::vector<bool>& fixed,
                          bool symmetric) {
   InnerSystem s;
-  s.row.assign(at(disc.vertex_count()), -1);
+  s.row.assign(idx(disc.vertex_count()), -1);
   int n = 0;
   for (int v = 0; v < disc.vertex_count(); ++v)
-    if (!fixed[at(v)]) s.row[at(v)] = n++;
+    if (!fixed[idx(v)]) s.row[idx(v)] = n++;
   s.rhs = Eigen::MatrixX2d::Zero(n, 2);
   Triplets entries;
-  entries.reserve(at(disc.halfedge_count() + n));
+  entries.reserve(idx(disc.halfedge_count() + n));
   for (int v = 0; v < disc.vertex_count(); ++v) {
-    const int i = s.row[at(v)];
+    const int i = s.row[idx(v)];
     if (i < 0) continue;
     double sum = 0;
     for_each_outgoing(disc, v, [&](int h) {
-      const int u = disc.to(h), j = s.row[at(u)];
-      const double weight = symmetric ? w[at(h)] + w[at(disc.twin[at(h)])] : w[at(h)];
+      const int u = disc.to(h), j = s.row[idx(u)];
+      const double weight = symmetric ? w[idx(h)] + w[idx(disc.twin[idx(h)])] : w[idx(h)];
       sum += weight;
       if (j >= 0)
         entries.emplace_back(i, j, -weight);
@@ -214,9 +211,9 @@ Result<MatrixX2d> tutte_embedding(const TriangleMesh& disc,
   if (Status s = check_polygon(boundary_positions, boundary_loop.size()); !s)
     return tl::unexpected(s.error());
   MatrixX2d uv = MatrixX2d::Zero(disc.vertex_count(), 2);
-  std::vector<bool> fixed(at(disc.vertex_count()), false);
+  std::vector<bool> fixed(idx(disc.vertex_count()), false);
   for (size_t i = 0; i < boundary_loop.size(); ++i) {
-    fixed[at(boundary_loop[i])] = true;
+    fixed[idx(boundary_loop[i])] = true;
     uv.row(boundary_loop[i]) = boundary_positions.row(static_cast<Eigen::Index>(i));
   }
   std::string why = "disc: factorization failed";
@@ -233,15 +230,15 @@ Result<MatrixX2d> tutte_embedding(const TriangleMesh& disc,
 }
 
 SplitMesh split_chords(const TriangleMesh& mesh) {
-  std::vector<bool> on_boundary(at(mesh.vertex_count()), false);
+  std::vector<bool> on_boundary(idx(mesh.vertex_count()), false);
   for (int h = 0; h < mesh.halfedge_count(); ++h)
-    if (mesh.twin[at(h)] < 0) on_boundary[at(mesh.from(h))] = true;
+    if (mesh.twin[idx(h)] < 0) on_boundary[idx(mesh.from(h))] = true;
   SplitMesh r;
-  std::vector<int> middle(at(mesh.halfedge_count()), -1);
+  std::vector<int> middle(idx(mesh.halfedge_count()), -1);
   for (int h = 0; h < mesh.halfedge_count(); ++h) {
-    const int g = mesh.twin[at(h)];
-    if (g < h || !on_boundary[at(mesh.from(h))] || !on_boundary[at(mesh.to(h))]) continue;
-    middle[at(h)] = middle[at(g)] = mesh.vertex_count() + static_cast<int>(r.parent_edge.size());
+    const int g = mesh.twin[idx(h)];
+    if (g < h || !on_boundary[idx(mesh.from(h))] || !on_boundary[idx(mesh.to(h))]) continue;
+    middle[idx(h)] = middle[idx(g)] = mesh.vertex_count() + static_cast<int>(r.parent_edge.size());
     r.parent_edge.push_back({mesh.from(h), mesh.to(h)});
   }
   std::vector<std::array<int, 3>> faces;
@@ -251,13 +248,13 @@ SplitMesh split_chords(const TriangleMesh& mesh) {
   };
   for (int f = 0; f < mesh.face_count(); ++f) {
     // Turn the face so that an unsplit edge, if split and unsplit ones meet, comes last.
-    const auto split = [&](int k) { return middle[at(3 * f + k % 3)] >= 0; };
+    const auto split = [&](int k) { return middle[idx(3 * f + k % 3)] >= 0; };
     const int count = int{split(0)} + int{split(1)} + int{split(2)};
     int k = 0;
     while (count > 0 && count < 3 && !(split(k) && !split(k + 2))) ++k;
     const int a = mesh.F(f, k % 3), b = mesh.F(f, (k + 1) % 3), c = mesh.F(f, (k + 2) % 3);
-    const int ab = middle[at(3 * f + k % 3)], bc = middle[at(3 * f + (k + 1) % 3)];
-    const int ca = middle[at(3 * f + (k + 2) % 3)];
+    const int ab = middle[idx(3 * f + k % 3)], bc = middle[idx(3 * f + (k + 1) % 3)];
+    const int ca = middle[idx(3 * f + (k + 2) % 3)];
     if (count == 0) {
       add(f, a, b, c);
     } else if (count == 1) {
