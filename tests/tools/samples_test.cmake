@@ -1,0 +1,21 @@
+# cmake -D GENERATOR=program -D SAMPLES=folder -D SCRATCH=folder -P samples_test.cmake
+# Runs the generator and compares what it writes with the committed samples, byte by byte.
+file(REMOVE_RECURSE "${SCRATCH}")
+file(MAKE_DIRECTORY "${SCRATCH}")
+execute_process(COMMAND "${GENERATOR}" "${SCRATCH}" RESULT_VARIABLE code)
+if(NOT code EQUAL 0)
+  message(FATAL_ERROR "the generator ended with ${code}")
+endif()
+file(GLOB written RELATIVE "${SCRATCH}" "${SCRATCH}/*")
+list(LENGTH written count)
+if(count LESS 7)
+  message(FATAL_ERROR "the generator wrote ${count} files, wanted 7: ${written}")
+endif()
+foreach(name IN LISTS written)
+  execute_process(COMMAND "${CMAKE_COMMAND}" -E compare_files "${SCRATCH}/${name}" "${SAMPLES}/${name}"
+                  RESULT_VARIABLE differs)
+  if(differs)
+    message(FATAL_ERROR "${name} differs from the committed sample")
+  endif()
+endforeach()
+file(REMOVE_RECURSE "${SCRATCH}")

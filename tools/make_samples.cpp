@@ -1,0 +1,115 @@
+// make_samples FOLDER: writes the sample meshes and textures. The same bytes on every run.
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <fstream>
+#include <map>
+
+#include "core/index.hpp"
+#include "tools/samples/coat.hpp"
+
+namespace crosspatch {
+namespace {
+
+struct Sample {
+  Creature creature;
+  double edge = 0;  ///< mean edge length; chosen so that thin gaps fall on the grid's good side
+  const CoatColors* coat = nullptr;
+};
+
+constexpr int kTextureSize = 512;
+
+/// Four decimals: a tenth of a millimetre on a creature two metres long.
+std::string vertex_lines(const TriangleMesh& mesh) {
+  std::string out;
+  for (int v = 0; v < mesh.vertex_count(); ++v)
+    out += fmt::format("v {:.4f} {:.4f} {:.4f}\n", mesh.V(v, 0), mesh.V(v, 1), mesh.V(v, 2));
+  return out;
+}
+
+std::string plain_obj(const TriangleMesh& mesh) {
+  std::string out = "# made by crosspatch's make_samples\n" + vertex_lines(mesh);
+  for (int f = 0; f < mesh.face_count(); ++f)
+    out += fmt::format("f {} {} {}\n", mesh.F(f, 0) + 1, mesh.F(f, 1) + 1, mesh.F(f, 2) + 1);
+  return out;
+}
+
+/// Corners that share vertex and chart share a `vt`; OBJ's v runs upwards.
+std::string textured_obj(const std::string& name, const TriangleMesh& mesh, const Atlas& atlas) {
+  std::string out = "# made by crosspatch's make_samples\nmtllib " + name + ".mtl\n";
+  out += vertex_lines(mesh);
+  std::map<std::pair<int, int>, int> number;
+  std::vector<int> vt;
+  for (int h = 0; h < mesh.halfedge_count(); ++h) {
+    const auto [entry, fresh] = number.try_emplace({mesh.from(h), atlas.chart[idx(face_of(h))]},
+                                                   static_cast<int>(number.size()) + 1);
+    if (fresh)
+      out += fmt::format(
+          "vt {:.5f} {:.5f}\n", atlas.pixel(h, 0) / atlas.size, 1 - atlas.pixel(h, 1) / atlas.size);
+    vt.push_back(entry->second);
+  }
+  out += "usemtl coat\n";
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    out += "f";
+    for (int k = 0; k < 3; ++k) out += fmt::format(" {}/{}", mesh.F(f, k) + 1, vt[idx(3 * f + k)]);
+    out += "\n";
+  }
+  return out;
+}
+
+Status write_text(const std::string& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  file.close();
+  if (!file) return fail(ErrorCode::kOutput, path + ": cannot be written");
+  return {};
+}
+
+Status write_png(const std::string& path, const CoatImage& image) {
+  const auto output = OIIO::ImageOutput::create(path);
+  OIIO::ImageSpec spec(image.size, image.size, 3, OIIO::TypeDesc::UINT8);
+  spec.attribute("png:compressionLevel", 9);
+  if (!output || !output->open(path, spec) ||
+      !output->write_image(OIIO::TypeDesc::UINT8, image.rgb.data()) || !output->close())
+    return fail(ErrorCode::kOutput, path + ": cannot be written");
+  return {};
+}
+
+Status write_sample(const std::string& folder, const Sample& sample) {
+  const std::string& name = sample.creature.name;
+  const std::string stem = folder + "/" + name;
+  const auto mesh = skin_mesh(sample.creature, sample.edge);
+  if (!mesh) return tl::unexpected(mesh.error());
+  if (sample.coat == nullptr) return write_text(stem + ".obj", plain_obj(*mesh));
+  const Atlas atlas = make_atlas(sample.creature, *mesh, kTextureSize);
+  if (Status s = write_text(stem + ".obj", textured_obj(name, *mesh, atlas)); !s) return s;
+  const std::string material =
+      "# made by crosspatch's make_samples\nnewmtl coat\nKd 1 1 1\nmap_Kd " + name + ".png\n";
+  if (Status s = write_text(stem + ".mtl", material); !s) return s;
+  return write_png(stem + ".png", paint_coat(sample.creature, *sample.coat, *mesh, atlas));
+}
+
+int run(const std::string& folder) {
+  const CoatColors lira = lira_colors(), bodo = bodo_colors();
+  for (const Sample& sample : {Sample{make_lira(), 0.043, &lira},
+                               Sample{make_bodo(), 0.050, &bodo},
+                               Sample{make_tola(), 0.048, nullptr}})
+    if (const Status s = write_sample(folder, sample); !s) {
+      fmt::print(stderr, "make_samples: {}\n", s.error().message);
+      return 5;
+    }
+  return 0;
+}
+
+}  // namespace
+}  // namespace crosspatch
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    fmt::print(stderr, "usage: make_samples FOLDER\n");
+    return 2;
+  }
+  return crosspatch::run(argv[1]);
+}
