@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# install_dependencies.sh [GROUP...]: installs what is missing from Debian 12.
+#   build  compiler and libraries
+#   demo   jq, to read the report
+#   test   Node.js and Chromium, for outside readers of glTF
+#   check  clang-format and clang-tidy
+# Asks for nothing when everything is there already; uses sudo only when not root.
+set -euo pipefail
+
+build=(cmake ninja-build g++
+       libopenmesh-dev libeigen3-dev libspectra-dev libceres-dev libsuitesparse-dev libopenblas-dev
+       libtinygltf-dev libopenimageio-dev libcli11-dev libfmt-dev libspdlog-dev nlohmann-json3-dev
+       libtbb-dev libnanoflann-dev libexpected-dev libboost-dev libgtest-dev libgmock-dev
+       libbenchmark-dev)
+demo=(jq)
+test=(chromium)
+check=(clang-format clang-tidy)
+# Node.js may come from elsewhere than Debian; then its package is not asked for.
+command -v node >/dev/null && command -v npm >/dev/null || test+=(nodejs npm)
+
+wanted=()
+for group in "${@:-build}"; do
+  case "$group" in
+    build) wanted+=("${build[@]}") ;;
+    demo) wanted+=("${demo[@]}") ;;
+    test) wanted+=("${test[@]}") ;;
+    check) wanted+=("${check[@]}") ;;
+    *) echo "install_dependencies.sh: unknown group '$group'" >&2; exit 2 ;;
+  esac
+done
+
+missing=()
+for package in "${wanted[@]}"; do
+  status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
+  [ "$status" = installed ] || missing+=("$package")
+done
+[ ${#missing[@]} -eq 0 ] && exit 0
+
+echo "installing from Debian: ${missing[*]}" >&2
+as_root=()
+[ "$(id -u)" -eq 0 ] || as_root=(sudo)
+export DEBIAN_FRONTEND=noninteractive
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >&2
