@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/result.hpp"
 #include "core/types.hpp"
 
 namespace crosspatch {
@@ -73,6 +74,14 @@ struct PolygonSoup {
   std::vector<std::string> notes;   ///< what the reader had to pass over, one line each
 
   [[nodiscard]] int polygon_count() const { return static_cast<int>(polygon_begin.size()) - 1; }
+  [[nodiscard]] int corner_count() const { return static_cast<int>(corner_vertex.size()); }
 };
+
+/// Checks that positions are finite, that corners, materials and images are in range, and that
+/// every attribute has one entry a corner (or a polygon). kBadInput names the first that is not.
+Status validate(const PolygonSoup& soup);
+
+/// The corners of all fan triangles, three each, in the numbering described at PolygonSoup.
+std::vector<int> fan_triangle_corners(const PolygonSoup& soup);
 
 }  // namespace crosspatch
