@@ -13,7 +13,7 @@ namespace crosspatch {
 /// write: those speak of file vertices and file triangles (polygons fanned, see PolygonSoup).
 struct FileNumbering {
   std::vector<int> mesh_vertex;    ///< per file vertex: its mesh vertex, or -1 (left out)
-  std::vector<int> file_triangle;  ///< per mesh face
+  std::vector<int> file_triangle;  ///< per mesh face, ascending
   std::vector<int> soup_corner;    ///< 3 per mesh face: corner of the soup at mesh corner 3 f + k
   std::vector<int> triangle_corners;  ///< 3 per file triangle: the soup's corners in fan order
 };
@@ -23,8 +23,8 @@ struct FileNumbering {
 struct PreparedMesh {
   TriangleMesh mesh;
   FileNumbering numbering;
-  std::vector<std::string> repairs;  ///< one line each: "welded 12 vertices", "left out 3 of 4
-                                     ///< components (2 % of area)", ...
+  std::vector<std::string> repairs;  ///< one line each, the soup's notes first: "welded 12
+                                     ///< vertices", "left out 3 of 4 components (2 % of area)", ...
 };
 
 struct PrepareOptions {
@@ -32,13 +32,25 @@ struct PrepareOptions {
       0;  ///< relative to the bounding box diagonal; 0 = identical positions only
 };
 
-/// Welds, fans, drops empty faces, makes orientation consistent, splits non-manifold vertices and
-/// edges, keeps the component of largest area. kBadInput when no triangle with area is left, a
-/// coordinate is not finite, or an index is out of range.
+/// Makes the soup one oriented manifold:
+/// 1. welds vertices at the same place, but only those on the boundary of the file's own
+///    connectivity: they are seams, while two closed sheets that touch stay apart;
+/// 2. fans polygons, leaves out triangles that repeat a vertex and copies of another triangle;
+/// 3. cuts edges where more than two triangles meet, keeping the sides of a solid, or else
+///    the flattest pair, together;
+/// 4. turns triangles to agree with their neighbours (the smaller area yields; a one-sided surface
+///    is cut) and a closed surface so that its volume is positive;
+/// 5. gives every fan of triangles a vertex of its own and keeps the component of largest area.
+/// A clean file keeps its numbering: mesh vertex i is file vertex i, face f file triangle f.
+/// kBadInput when no triangle with area is left, a coordinate is not finite, or an index is out of
+/// range.
 Result<PreparedMesh> prepare(const PolygonSoup& soup, const PrepareOptions& options = {});
 
 /// A point of the mesh in the file's numbering: face is the file triangle, bary refers to its fan
-/// order.
+/// order. An invalid point stays invalid.
 SurfacePoint to_file(const PreparedMesh& prepared, const SurfacePoint& p);
+
+/// The inverse of to_file; face == -1 where the file's triangle was left out or does not exist.
+SurfacePoint from_file(const PreparedMesh& prepared, const SurfacePoint& p);
 
 }  // namespace crosspatch
