@@ -2,7 +2,9 @@
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -24,6 +26,29 @@ bool starts_with(const std::vector<unsigned char>& bytes, std::string_view magic
          });
 }
 
+/// Sends standard error nowhere until it goes out of scope: the PNG library under OpenImageIO
+/// prints its complaints there, past every error handler that OpenImageIO lets us set. For serial
+/// use only, as it holds for the whole process.
+class SilentStandardError {
+ public:
+  SilentStandardError() : kept_(dup(STDERR_FILENO)) {
+    const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+    if (nowhere < 0) return;
+    dup2(nowhere, STDERR_FILENO);
+    close(nowhere);
+  }
+  SilentStandardError(const SilentStandardError&) = delete;
+  SilentStandardError& operator=(const SilentStandardError&) = delete;
+  ~SilentStandardError() {
+    if (kept_ < 0) return;
+    dup2(kept_, STDERR_FILENO);
+    close(kept_);
+  }
+
+ private:
+  int kept_;
+};
+
 /// Error texts of the library may span lines; ours do not.
 std::string first_line(std::string text) {
   return text.substr(0, text.find('\n'));
@@ -44,6 +69,7 @@ void spread(const std::vector<std::uint8_t>& in, size_t channels, std::vector<st
 Result<Bitmap> decode_image(const std::vector<unsigned char>& bytes) {
   const bool png = starts_with(bytes, "\x89PNG"), jpeg = starts_with(bytes, "\xff\xd8\xff");
   if (!png && !jpeg) return fail(ErrorCode::kBadInput, "image: neither PNG nor JPEG data");
+  const SilentStandardError silent;
   const auto input = OIIO::ImageInput::create(png ? "png" : "jpeg");
   OIIO::Filesystem::IOMemReader reader(bytes.data(), bytes.size());
   OIIO::ImageSpec spec, config;

@@ -10,7 +10,7 @@ namespace crosspatch {
 
 /// Decodes an image file held in memory (PNG or JPEG, told by its first bytes). kBadInput: another
 /// format, broken data, or more than 16384 pixels on a side or 128 million altogether, which is
-/// checked before any pixel is read.
+/// checked before any pixel is read. Not for use by several threads at once.
 Result<Bitmap> decode_image(const std::vector<unsigned char>& bytes);
 
 /// The bitmap's colours as the bytes of a PNG file, 8 bits RGB. kOutput when the encoder fails.

@@ -67,17 +67,6 @@ std::vector<int> fan_polygons(const PolygonSoup& soup) {
 
 }  // namespace
 
-MatrixX3i fan_corners(const PolygonSoup& soup) {
-  MatrixX3i fans(static_cast<Eigen::Index>(fan_polygons(soup).size()), 3);
-  int f = 0;
-  for (int p = 0; p < soup.polygon_count(); ++p) {
-    const int first = soup.polygon_begin[at(p)];
-    for (int k = first + 2; k < soup.polygon_begin[at(p + 1)]; ++k)
-      fans.row(f++) << first, k - 1, k;
-  }
-  return fans;
-}
-
 Surface make_surface(const MatrixX3d& V, const MatrixX3i& F) {
   MatrixX3d normal = MatrixX3d::Zero(V.rows(), 3);
   for (int f = 0; f < F.rows(); ++f) {
@@ -95,16 +84,23 @@ Surface make_surface(const MatrixX3d& V, const MatrixX3i& F) {
   return surface;
 }
 
+Surface plain_surface(const PolygonSoup& soup) {
+  const std::vector<int> corners = fan_triangle_corners(soup);
+  MatrixX3i F(static_cast<Eigen::Index>(corners.size() / 3), 3);
+  for (size_t c = 0; c < corners.size(); ++c)
+    F(static_cast<Eigen::Index>(c / 3), static_cast<Eigen::Index>(c % 3)) =
+        soup.corner_vertex[at(corners[c])];
+  return make_surface(soup.positions, F);
+}
+
 Result<Scene> textured_scene(const PolygonSoup& soup) {
   Scene scene;
   const Result<std::vector<int>> textures = add_textures(soup, scene);
   if (!textures) return tl::unexpected(textures.error());
-  const MatrixX3i fans = fan_corners(soup);
+  const std::vector<int> fans = fan_triangle_corners(soup);
   const std::vector<int> polygon = fan_polygons(soup);
-  MatrixX3i F(fans.rows(), 3);
-  for (int f = 0; f < F.rows(); ++f)
-    for (int k = 0; k < 3; ++k) F(f, k) = soup.corner_vertex[at(fans(f, k))];
-  Surface surface = make_surface(soup.positions, F);
+  Surface surface = plain_surface(soup);
+  const MatrixX3i& F = surface.F;
   surface.corner_color.assign(at(3 * F.rows()), neutral_color());
   surface.face_texture.assign(at(F.rows()), -1);
   surface.corner_uv = MatrixX2d::Zero(3 * F.rows(), 2);
@@ -114,7 +110,7 @@ Result<Scene> textured_scene(const PolygonSoup& soup) {
     const int texture = m < 0 ? -1 : (*textures)[at(m)];
     surface.face_texture[at(f)] = texture;
     for (int k = 0; k < 3; ++k) {
-      const size_t corner = at(fans(f, k)), mine = at(3 * f + k);
+      const size_t corner = at(fans[at(3 * f + k)]), mine = at(3 * f + k);
       Color& color = surface.corner_color[mine];
       if (material != nullptr) color = material_color(*material);
       if (!soup.corner_colors.empty()) {

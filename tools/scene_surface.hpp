@@ -9,12 +9,11 @@
 
 namespace crosspatch {
 
-/// The corners of the file's fan triangles (#triangles x 3, into the soup's corners), numbered as
-/// PolygonSoup says.
-MatrixX3i fan_corners(const PolygonSoup& soup);
-
 /// A surface of the given triangles without a colour, shaded smoothly by area-weighted normals.
 Surface make_surface(const MatrixX3d& V, const MatrixX3i& F);
+
+/// The file's fan triangles over its vertices, without a colour.
+Surface plain_surface(const PolygonSoup& soup);
 
 /// The file's mesh as it is meant to look: base colours, base colour textures and corner colours.
 /// kBadInput when a texture that is used cannot be decoded, with the image's name.

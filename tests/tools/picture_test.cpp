@@ -104,7 +104,7 @@ TEST(Picture, SoupWithTextureAndQuads) {
   soup.images.push_back({"stripes.png", "image/png", encode_png(stripes).value()});
   soup.materials.emplace_back();
   soup.materials[0].base_color.image = 0;
-  EXPECT_EQ(fan_corners(soup).rows(), 98);
+  EXPECT_EQ(plain_surface(soup).F.rows(), 98);
   const Result<Scene> scene = textured_scene(soup);
   ASSERT_TRUE(scene) << scene.error().message;
   expect_as_stored(draw_figure({*scene},

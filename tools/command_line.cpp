@@ -1,0 +1,171 @@
+#include "tools/command_line.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <map>
+#include <sstream>
+
+#include "tools/version.hpp"
+
+namespace crosspatch {
+namespace {
+
+constexpr int kMaxThreads = 1024;
+constexpr int kMaxPictureSide = 16384;
+
+void add_common(CLI::App& command, CommonArguments& common) {
+  command
+      .add_option("--json",
+                  common.json,
+                  "Write a report of the run: inputs, times, figures ('-' = standard output)")
+      ->type_name("FILE");
+  command
+      .add_option(
+          "--threads", common.threads, "Threads to work with; results do not depend on it [all]")
+      ->check(CLI::Range(1, kMaxThreads))
+      ->type_name("N");
+  command.add_flag("-q,--quiet", common.quiet, "No progress lines");
+}
+
+/// "1200x900"
+std::string parse_size(const std::string& text, RenderArguments& arguments) {
+  std::istringstream stream(text);
+  char by = 0;
+  if (!(stream >> arguments.width >> by >> arguments.height) || by != 'x' || !stream.eof())
+    return fmt::format("--size: '{}' is not of the form WIDTHxHEIGHT", text);
+  for (const int side : {arguments.width, arguments.height})
+    if (side < 16 || side > kMaxPictureSide)
+      return fmt::format("--size: {} is outside [16, {}]", side, kMaxPictureSide);
+  return "";
+}
+
+std::string parse_views(const std::string& text, RenderArguments& arguments) {
+  arguments.views.clear();
+  std::istringstream stream(text);
+  for (std::string name; std::getline(stream, name, ',');) {
+    const Result<View> view = parse_view(name);
+    if (!view) return "--views: " + view.error().message;
+    arguments.views.push_back(*view);
+  }
+  return arguments.views.empty() ? "--views: none is named" : "";
+}
+
+template <class Parse>
+void add_parsed(
+    CLI::App& command, const char* name, const char* what, const char* type, Parse parse) {
+  command
+      .add_option_function<std::string>(
+          name,
+          [parse](const std::string& text) {
+            if (const std::string problem = parse(text); !problem.empty())
+              throw CLI::ValidationError(problem);
+          },
+          what)
+      ->type_name(type);
+}
+
+CLI::App* add_inspect(CLI::App& app, InspectArguments& arguments) {
+  CLI::App* command =
+      app.add_subcommand("inspect", "Say what a mesh file holds and what has to be repaired in it");
+  command->add_option("MESH", arguments.mesh, "OBJ, PLY, OFF, STL, glTF or GLB")->required();
+  add_common(*command, arguments.common);
+  command->footer(
+      "\nExamples:\n  crosspatch inspect cow.obj\n  crosspatch inspect cow.obj --json cow.json");
+  return command;
+}
+
+void add_render(CLI::App& app, RenderArguments& arguments) {
+  CLI::App* command =
+      app.add_subcommand("render", "Draw one mesh, or two with corresponding colours, as a PNG");
+  command->add_option("MESH", arguments.mesh, "Mesh to draw")->required();
+  command->add_option("MESH2", arguments.mesh2, "Mesh to draw below it");
+  command->add_option("-o,--output", arguments.output, "Picture to write")
+      ->required()
+      ->type_name("PNG");
+  command
+      ->add_option("--map",
+                   arguments.map,
+                   "Map from MESH to MESH2 (map.txt): corresponding places get the same colour")
+      ->type_name("FILE");
+  command->add_option("--landmarks", arguments.landmarks, "Mark these vertex pairs with balls")
+      ->type_name("FILE");
+  command
+      ->add_option("--field", arguments.field, "Colour MESH by numbers, one a vertex or a triangle")
+      ->type_name("FILE");
+  add_parsed(
+      *command,
+      "--texture",
+      "own: the file's colours and textures; position: coloured by place; checker: the same with a "
+      "checker [own for one mesh, position for two]",
+      "own|position|checker",
+      [&arguments](const std::string& text) -> std::string {
+        if (text == "own")
+          arguments.colors = DrawnColors::kOwn;
+        else if (text == "position")
+          arguments.colors = DrawnColors::kPosition;
+        else if (text == "checker")
+          arguments.colors = DrawnColors::kChecker;
+        else
+          return fmt::format("--texture: '{}' is none of own, position, checker", text);
+        return "";
+      });
+  add_parsed(*command,
+             "--views",
+             "front, back, left, right (= side), top, bottom, quarter, separated by commas "
+             "[front,side,back,top]",
+             "LIST",
+             [&arguments](const std::string& text) { return parse_views(text, arguments); });
+  add_parsed(*command,
+             "--size",
+             "Pixels of the picture [1200x900]",
+             "WxH",
+             [&arguments](const std::string& text) { return parse_size(text, arguments); });
+  command->add_option("--up", arguments.up, "Axis that points up, or p for principal axes [y]")
+      ->check(CLI::IsMember({"x", "y", "z", "p"}))
+      ->type_name("x|y|z|p");
+  add_common(*command, arguments.common);
+  command->footer(
+      "\nExamples:\n"
+      "  crosspatch render cow.obj --output cow.png --views quarter --size 800x600\n"
+      "  crosspatch render cow.obj camel.off --map map.txt --texture checker --output pair.png");
+}
+
+}  // namespace
+
+tl::expected<Command, CommandLineStop> parse_command_line(int argc, const char* const* argv) {
+  CLI::App app("Finds how one surface corresponds to another and carries textures across",
+               "crosspatch");
+  app.set_version_flag("--version", std::string("crosspatch ") + kVersion);
+  app.require_subcommand(1);
+  app.footer(
+      "\ncrosspatch COMMAND --help tells more about a command.\n"
+      "Exit codes: 0 done, 1 a quality gate failed, 2 usage, 3 bad input,\n"
+      "4 no trustworthy correspondence, 5 out of memory or internal error.");
+  InspectArguments inspect;
+  RenderArguments render;
+  const CLI::App* inspect_command = add_inspect(app, inspect);
+  add_render(app, render);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::RequiredError& error) {
+    // The library tells of the missing subcommand before it tells of a word it does not know.
+    const bool unknown = app.get_subcommands().empty() && argc > 1;
+    return tl::unexpected(CommandLineStop{
+        ExitCode::kUsage,
+        fmt::format("{} (see crosspatch --help)",
+                    unknown ? fmt::format("'{}' is no command", argv[1]) : error.what())});
+  } catch (const CLI::ParseError& error) {
+    std::ostringstream out, usage;
+    if (app.exit(error, out, usage) == 0)
+      return tl::unexpected(CommandLineStop{ExitCode::kDone, out.str()});
+    return tl::unexpected(
+        CommandLineStop{ExitCode::kUsage, std::string(error.what()) + " (see crosspatch --help)"});
+  }
+  if (inspect_command->parsed()) return inspect;
+  if (!render.map.empty() && render.mesh2.empty())
+    return tl::unexpected(CommandLineStop{ExitCode::kUsage, "--map needs MESH2, the map's target"});
+  return render;
+}
+
+}  // namespace crosspatch

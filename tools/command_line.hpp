@@ -1,0 +1,61 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "tools/exit_code.hpp"
+#include "tools/view.hpp"
+
+namespace crosspatch {
+
+/// What every subcommand understands.
+struct CommonArguments {
+  std::string json;            ///< file for the run's report; empty = none
+  std::optional<int> threads;  ///< at least 1; unset = as many as the machine has
+  bool quiet = false;
+};
+
+/// crosspatch inspect MESH
+struct InspectArguments {
+  CommonArguments common;
+  std::string mesh;
+};
+
+/// What drawn meshes are coloured by.
+enum class DrawnColors {
+  kOwn,       ///< the file's colours and textures
+  kPosition,  ///< place; with a map, that of the image on the second mesh
+  kChecker,   ///< the same with a checker
+};
+
+/// crosspatch render MESH [MESH2]
+struct RenderArguments {
+  CommonArguments common;
+  std::string mesh;
+  std::string mesh2;                  ///< empty = one mesh
+  std::string output;                 ///< PNG
+  std::string map;                    ///< map file from the first mesh to the second; empty = none
+  std::string landmarks;              ///< file of corresponding vertices to mark; empty = none
+  std::string field;                  ///< file of numbers, one a vertex or a triangle; empty = none
+  std::optional<DrawnColors> colors;  ///< unset = kOwn for one mesh, kPosition for two
+  std::vector<View> views{View::kFront, View::kRight, View::kBack, View::kTop};
+  int width = 1200;  ///< pixels
+  int height = 900;  ///< pixels
+  char up = 'y';     ///< 'x', 'y', 'z', or 'p' for principal axes
+};
+
+using Command = std::variant<InspectArguments, RenderArguments>;
+
+/// Why there is no command to run: help or the version was asked for (kDone, `text` belongs on
+/// standard output), or the arguments are wrong (kUsage, `text` is one line).
+struct CommandLineStop {
+  ExitCode code = ExitCode::kUsage;
+  std::string text;
+};
+
+/// Reads the program's arguments.
+tl::expected<Command, CommandLineStop> parse_command_line(int argc, const char* const* argv);
+
+}  // namespace crosspatch

@@ -1,0 +1,22 @@
+#include "tools/commands.hpp"
+
+namespace crosspatch {
+namespace {
+
+std::vector<std::string> files(const InspectArguments& arguments) {
+  return {arguments.common.json};
+}
+std::vector<std::string> files(const RenderArguments& arguments) {
+  return {arguments.output, arguments.common.json};
+}
+
+}  // namespace
+
+std::vector<std::string> output_paths(const Command& command) {
+  std::vector<std::string> paths =
+      std::visit([](const auto& arguments) { return files(arguments); }, command);
+  std::erase(paths, "");
+  return paths;
+}
+
+}  // namespace crosspatch

@@ -1,0 +1,44 @@
+#include "tools/progress.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace crosspatch {
+
+Progress::Progress(bool quiet, int stages)
+    : quiet_(quiet), terminal_(!quiet && isatty(STDERR_FILENO) != 0), stages_(stages) {}
+
+void Progress::begin(const std::string& stage) {
+  stage_ = stage;
+  begun_ = std::chrono::steady_clock::now();
+  if (!terminal_) return;
+  constexpr std::size_t kBarWidth = 24;
+  const std::size_t done =
+      std::min(kBarWidth, kBarWidth * records_.size() / static_cast<std::size_t>(stages_));
+  const std::string bar = std::string(done, '#') + std::string(kBarWidth - done, '.');
+  fmt::print(stderr, "\r\033[K[{}] {}/{} {}", bar, records_.size() + 1, stages_, stage);
+  std::fflush(stderr);
+}
+
+void Progress::end(const std::string& summary) {
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begun_;
+  records_.push_back({stage_, taken.count(), peak_memory_mib()});
+  clear_bar();
+  if (!quiet_) fmt::print(stderr, "{:<9} {:7.2f} s  {}\n", stage_, taken.count(), summary);
+}
+
+void Progress::clear_bar() const {
+  if (terminal_) fmt::print(stderr, "\r\033[K");
+}
+
+double peak_memory_mib() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;  // Linux counts kB
+}
+
+}  // namespace crosspatch
