@@ -105,9 +105,9 @@ class Assembly {
                                                   : Vector3d(Vector3d::Zero()));
     const double* value = overlay.attributes.data() + idx(wedge * attributes_.width);
     for (int s = 0; s < attributes_.uv_sets; ++s)
-      mesh_.uv_sets[idx(s)].emplace_back(value[2 * s], value[2 * s + 1]);
+      mesh_.uv_sets[idx(s)].emplace_back(value[idx(2 * s)], value[idx(2 * s + 1)]);
     if (!attributes_.colors) return;
-    const double* rgba = value + 2 * attributes_.uv_sets;
+    const double* rgba = value + idx(2 * attributes_.uv_sets);
     mesh_.colors.push_back({static_cast<float>(rgba[0]),
                             static_cast<float>(rgba[1]),
                             static_cast<float>(rgba[2]),

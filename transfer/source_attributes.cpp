@@ -27,11 +27,13 @@ std::vector<int> polygon_of_corner(const PolygonSoup& soup) {
 Vector2d texels_per_unit(const PolygonSoup& soup, const TextureRef& t) {
   const auto size = image_size(soup.images[idx(t.image)]);
   if (!size) return Vector2d::Zero();
-  const Vector2d texels(size->width, size->height);
+  Vector2d texels(size->width, size->height);
   if (!t.transform) return texels;
-  const Vector2d scale = t.transform->scale.cwiseAbs();
-  if (t.transform->rotation_radians == 0) return texels.cwiseProduct(scale);
-  return Vector2d::Constant(texels.maxCoeff() * scale.maxCoeff());
+  if (t.transform->rotation_radians == 0)
+    texels = texels.cwiseProduct(t.transform->scale.cwiseAbs());
+  else
+    texels.setConstant(texels.maxCoeff() * t.transform->scale.cwiseAbs().maxCoeff());
+  return texels;
 }
 
 std::vector<Vector2d> texel_table(const PolygonSoup& soup, int uv_sets, int default_texels) {
@@ -73,15 +75,15 @@ void gather_corners(const AttributedMesh& source, SourceAttributes& a) {
       for (int s = 0; s < a.uv_sets; ++s) {
         const Vector2d uv = soup.uv_sets[idx(s)][idx(corner)];
         if (uv.allFinite()) {
-          out[2 * s] = uv[0];
-          out[2 * s + 1] = uv[1];
+          out[idx(2 * s)] = uv[0];
+          out[idx(2 * s + 1)] = uv[1];
         } else if (needs_uv(soup, a.material[idx(f)], s)) {
           a.usable[idx(f)] = false;
         }
       }
       if (a.colors)
         for (int c = 0; c < 4; ++c)
-          out[2 * a.uv_sets + c] = double(soup.corner_colors[idx(corner)][idx(c)]);
+          out[idx(2 * a.uv_sets + c)] = double(soup.corner_colors[idx(corner)][idx(c)]);
     }
   }
 }
@@ -119,8 +121,8 @@ SourceAttributes source_attributes(const AttributedMesh& source, int default_tex
 void evaluate(const SourceAttributes& a, const SurfacePoint& p, double* out) {
   const double* corner = a.values.data() + idx(3 * p.face * a.width);
   for (int i = 0; i < a.width; ++i)
-    out[i] = p.bary[0] * corner[i] + p.bary[1] * corner[a.width + i] +
-             p.bary[2] * corner[2 * a.width + i];
+    out[i] = p.bary[0] * corner[i] + p.bary[1] * corner[idx(a.width + i)] +
+             p.bary[2] * corner[idx(2 * a.width + i)];
 }
 
 AttributeError difference(const SourceAttributes& attributes,
@@ -130,7 +132,8 @@ AttributeError difference(const SourceAttributes& attributes,
   AttributeError error;
   for (int s = 0; s < attributes.uv_sets; ++s) {
     const Vector2d& texels = attributes.texels[idx((material + 1) * attributes.uv_sets + s)];
-    const Vector2d d(a[2 * s] - b[2 * s], a[2 * s + 1] - b[2 * s + 1]);
+    const std::size_t u = idx(2 * s), v = u + 1;
+    const Vector2d d(a[u] - b[u], a[v] - b[v]);
     error.uv_texels = std::max(error.uv_texels, d.cwiseProduct(texels).norm());
   }
   for (int i = 2 * attributes.uv_sets; i < attributes.width; ++i)

@@ -172,6 +172,7 @@ class Thinner {
       marks.push_back(sector.closing);
     if (loop.size() < 3) return std::nullopt;
     std::vector<Vector3d> corners;
+    corners.reserve(loop.size());
     for (const int w : loop) corners.push_back(bary(w, face));
     const auto cut = triangulate(corners,
                                  lay_flat(target_.position(target_.F(face, 0)),

@@ -117,8 +117,7 @@ void rasterize(const TriangleMesh& mesh,
       const Vector3d color = painter.at(place);
       // Steps of 5 keep the file small and are too fine to see.
       for (int i = 0; i < 3; ++i)
-        image.rgb[idx(3 * pixel + i)] =
-            static_cast<std::uint8_t>(5 * static_cast<int>(color[i] / 5 + 0.5));
+        image.rgb[idx(3 * pixel + i)] = static_cast<std::uint8_t>(5 * std::lround(color[i] / 5));
       painted[idx(pixel)] = true;
     }
 }
