@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/image_header.hpp"
 #include "core/index.hpp"
-#include "transfer/image_size.hpp"
 
 namespace crosspatch {
 namespace {
@@ -25,7 +25,7 @@ std::vector<int> polygon_of_corner(const PolygonSoup& soup) {
 /// A texture transform scales UVs before it turns them; under a turn either axis may meet either
 /// side of the image, so the larger product is taken.
 Vector2d texels_per_unit(const PolygonSoup& soup, const TextureRef& t) {
-  const auto size = image_size(soup.images[idx(t.image)]);
+  const auto size = sniff_image(soup.images[idx(t.image)].bytes);
   if (!size) return Vector2d::Zero();
   Vector2d texels(size->width, size->height);
   if (!t.transform) return texels;
