@@ -1,0 +1,55 @@
+#include "core/features.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "core/geodesics.hpp"
+
+namespace crosspatch {
+
+Result<std::vector<Tip>> canonical_tips(const TriangleMesh& mesh,
+                                        const Eigen::VectorXd& log_adf,
+                                        double persistence) {
+  // Already logarithms, hence the linear scale.
+  const auto complex =
+      morse_smale_complex(mesh, log_adf, {.threshold = persistence, .scale = FieldScale::kLinear});
+  if (!complex) return tl::unexpected(complex.error());
+  std::vector<Tip> tips;
+  for (const MorseNode& node : complex->nodes)
+    if (node.kind == NodeKind::kMaximum)
+      tips.push_back({node.vertex, std::min(1.0, node.persistence), node.value});
+  std::sort(tips.begin(), tips.end(), [](const Tip& a, const Tip& b) {
+    return std::tuple(-a.persistence, a.vertex) < std::tuple(-b.persistence, b.vertex);
+  });
+  return tips;
+}
+
+Result<ShapeFeatures> compute_features(const TriangleMesh& mesh, const FeatureOptions& options) {
+  constexpr int kLeastVertices = 4;  // of a tetrahedron; the wave kernel needs three eigenpairs
+  if (mesh.vertex_count() < kLeastVertices)
+    return fail(
+        ErrorCode::kBadInput,
+        fmt::format(
+            "mesh: {} vertices, at least {} are needed", mesh.vertex_count(), kLeastVertices));
+  auto spectrum = compute_spectrum(mesh, options.spectrum);
+  if (!spectrum) return tl::unexpected(spectrum.error());
+  ShapeFeatures features;
+  features.log_adf = auto_diffusion(*spectrum, options.adf).array().log();
+  features.log_hks = log_heat_kernel_signature(*spectrum, options.hks);
+  features.wks = wave_kernel_signature(*spectrum, options.wks);
+  features.spectrum = std::move(*spectrum);
+  auto tips = canonical_tips(mesh, features.log_adf, options.tip_persistence);
+  if (!tips) return tl::unexpected(tips.error());
+  features.tips = std::move(*tips);
+  if (features.tips.size() > static_cast<std::size_t>(options.max_tips))
+    features.tips.resize(static_cast<std::size_t>(options.max_tips));
+  std::vector<int> vertices;
+  for (const Tip& tip : features.tips) vertices.push_back(tip.vertex);
+  features.tip_distances = geodesic_distances(mesh, vertices) / std::sqrt(total_area(mesh));
+  return features;
+}
+
+}  // namespace crosspatch

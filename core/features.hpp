@@ -1,0 +1,50 @@
+#pragma once
+
+#include <vector>
+
+#include "core/morse_smale.hpp"
+#include "core/signatures.hpp"
+
+namespace crosspatch {
+
+/// An extremity: a maximum of the auto diffusion function.
+struct Tip {
+  int vertex = -1;
+  double persistence = 0;  ///< on log ADF, as a fraction of its range; 1 for the highest maximum
+  double log_adf = 0;      ///< value there
+};
+
+struct FeatureOptions {
+  SpectrumOptions spectrum{};
+  AutoDiffusionOptions adf{};
+  HeatKernelOptions hks{};
+  WaveKernelOptions wks{};
+  /// Least persistence of a tip on log ADF. 0.02 lies on the plateau from about .015 to .1 on which
+  /// the count of tips agrees over poses and related species (measured on FAUST, TOSCA, SHREC'07).
+  double tip_persistence = 0.02;
+  /// Of more tips the most persistent are kept.
+  int max_tips = 24;
+};
+
+/// What is computed once of each surface, in units of the surface scaled to area 1.
+struct ShapeFeatures {
+  Spectrum spectrum;
+  Eigen::VectorXd log_adf;        ///< #V, natural logarithm of Eq. (1)
+  Eigen::MatrixXd log_hks;        ///< #V x times
+  Eigen::MatrixXd wks;            ///< #V x energies
+  std::vector<Tip> tips;          ///< by falling persistence
+  Eigen::MatrixXd tip_distances;  ///< #V x tips, geodesic, divided by sqrt(area)
+};
+
+/// Maxima of `log_adf` (#V) of at least `persistence`, by falling persistence (ties by vertex).
+/// Errors of discrete_gradient.
+Result<std::vector<Tip>> canonical_tips(const TriangleMesh& mesh,
+                                        const Eigen::VectorXd& log_adf,
+                                        double persistence = 0.02);
+
+/// Computes all fields of ShapeFeatures. kBadInput for a mesh of fewer than 4 vertices; errors of
+/// compute_spectrum.
+Result<ShapeFeatures> compute_features(const TriangleMesh& mesh,
+                                       const FeatureOptions& options = {});
+
+}  // namespace crosspatch

@@ -1,0 +1,66 @@
+#include "core/features.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/creatures.hpp"
+
+namespace crosspatch {
+namespace {
+
+TEST(Features, TipsOfACreatureAreTheEndsOfItsLimbs) {
+  const ShapeFeatures features = compute_features(shapes::creature(3)).value();
+  ASSERT_EQ(features.tips.size(), shapes::limb_directions().size());
+  for (const Vector3d& limb : shapes::limb_directions()) {
+    double nearest = 10;
+    for (const Tip& tip : features.tips)
+      nearest = std::min(
+          nearest,
+          (shapes::creature(3).position(tip.vertex).normalized() - limb.normalized()).norm());
+    EXPECT_LT(nearest, 0.2);  // about an edge of the mesh
+  }
+}
+
+TEST(Features, TipsAreSortedAndDistancesBelongToThem) {
+  const TriangleMesh mesh = shapes::creature(3);
+  const ShapeFeatures features = compute_features(mesh).value();
+  EXPECT_EQ(features.tips.front().persistence, 1);
+  for (size_t i = 0; i < features.tips.size(); ++i) {
+    if (i > 0) {
+      EXPECT_LE(features.tips[i].persistence, features.tips[i - 1].persistence);
+    }
+    EXPECT_GE(features.tips[i].persistence, 0.02);
+    EXPECT_EQ(features.tips[i].log_adf, features.log_adf[features.tips[i].vertex]);
+    EXPECT_EQ(features.tip_distances(features.tips[i].vertex, static_cast<Eigen::Index>(i)), 0);
+  }
+  EXPECT_EQ(features.log_hks.rows(), mesh.vertex_count());
+  EXPECT_EQ(features.wks.rows(), mesh.vertex_count());
+}
+
+TEST(Features, DoNotDependOnScaleRotationOrVertexNumbers) {
+  const TriangleMesh mesh = shapes::creature(3);
+  const int n = mesh.vertex_count();
+  const Eigen::Matrix3d R = Eigen::AngleAxisd(1, Vector3d(1, 2, 3).normalized()).matrix();
+  MatrixX3d V(n, 3);
+  for (int v = 0; v < n; ++v) V.row(n - 1 - v) = (7 * R * mesh.position(v)).transpose();
+  const TriangleMesh moved = make_mesh(V, (n - 1 - mesh.F.array()).matrix()).value();
+  const ShapeFeatures a = compute_features(mesh).value(), b = compute_features(moved).value();
+  ASSERT_EQ(a.tips.size(), b.tips.size());
+  for (size_t i = 0; i < a.tips.size(); ++i) {
+    EXPECT_EQ(a.tips[i].vertex, n - 1 - b.tips[i].vertex);
+    EXPECT_NEAR(a.tips[i].persistence, b.tips[i].persistence, 1e-6);  // solver tolerance
+  }
+  EXPECT_LT((a.tip_distances - b.tip_distances.colwise().reverse()).norm(), 1e-9);  // rounding
+}
+
+TEST(Features, RefuseATriangle) {
+  MatrixX3d V(3, 3);
+  V << 0, 0, 0, 1, 0, 0, 0, 1, 0;
+  MatrixX3i F(1, 3);
+  F << 0, 1, 2;
+  const auto features = compute_features(make_mesh(V, F).value());
+  ASSERT_FALSE(features);
+  EXPECT_EQ(features.error().message, "mesh: 3 vertices, at least 4 are needed");
+}
+
+}  // namespace
+}  // namespace crosspatch
