@@ -1,0 +1,195 @@
+#include "core/progressive_mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+#include <OpenMesh/Tools/Decimater/DecimaterT.hh>
+#include <OpenMesh/Tools/Decimater/ModNormalFlippingT.hh>
+#include <OpenMesh/Tools/Decimater/ModProgMeshT.hh>
+#include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
+#include <algorithm>
+#include <numeric>
+
+namespace crosspatch {
+namespace {
+
+using std::size_t;
+
+size_t at(int i) { return static_cast<size_t>(i); }
+
+struct DoubleTraits : OpenMesh::DefaultTraits {
+  using Point = OpenMesh::Vec3d;
+  using Normal = OpenMesh::Vec3d;
+};
+using OmMesh = OpenMesh::TriMesh_ArrayKernelT<DoubleTraits>;
+
+OmMesh to_openmesh(const MatrixX3d& V, const MatrixX3i& F) {
+  OmMesh om;
+  for (int v = 0; v < V.rows(); ++v) om.add_vertex({V(v, 0), V(v, 1), V(v, 2)});
+  for (int f = 0; f < F.rows(); ++f)
+    om.add_face(om.vertex_handle(static_cast<unsigned>(F(f, 0))),
+                om.vertex_handle(static_cast<unsigned>(F(f, 1))),
+                om.vertex_handle(static_cast<unsigned>(F(f, 2))));
+  om.request_vertex_status();
+  om.request_edge_status();
+  om.request_halfedge_status();
+  om.request_face_status();
+  om.request_face_normals();
+  om.update_face_normals();
+  return om;
+}
+
+using CollapseList = std::vector<std::pair<int, int>>;
+
+/// The collapses (removed, kept) that bring the mesh down to `vertices`, cheapest first.
+CollapseList decimate(const MatrixX3d& V, const MatrixX3i& F, int vertices, const ProgressiveOptions* keep_shape) {
+  OmMesh om = to_openmesh(V, F);
+  OpenMesh::Decimater::DecimaterT<OmMesh> decimater(om);
+  OpenMesh::Decimater::ModQuadricT<OmMesh>::Handle quadric;
+  OpenMesh::Decimater::ModProgMeshT<OmMesh>::Handle history;
+  OpenMesh::Decimater::ModNormalFlippingT<OmMesh>::Handle turning;
+  decimater.add(quadric);
+  decimater.module(quadric).unset_max_err();
+  decimater.add(history);
+  if (keep_shape != nullptr) {
+    for (int v : keep_shape->protected_vertices) om.status(om.vertex_handle(static_cast<unsigned>(v))).set_locked(true);
+    decimater.add(turning);
+    decimater.module(turning).set_max_normal_deviation(90);
+  }
+  CollapseList collapses;
+  if (!decimater.initialize()) return collapses;
+  decimater.decimate_to(at(vertices));
+  for (const auto& info : decimater.module(history).infolist()) collapses.emplace_back(info.v0.idx(), info.v1.idx());
+  return collapses;
+}
+
+/// The faces left by the collapses, over the vertices left; `vertex` gives their numbers before.
+MatrixX3i collapsed_faces(const MatrixX3i& F, int vertices, const CollapseList& collapses, std::vector<int>& vertex) {
+  std::vector<int> into(at(vertices));
+  std::iota(into.begin(), into.end(), 0);
+  for (auto it = collapses.rbegin(); it != collapses.rend(); ++it) into[at(it->first)] = into[at(it->second)];
+  std::vector<int> compact(at(vertices), -1);
+  for (int v = 0; v < vertices; ++v)
+    if (into[at(v)] == v) {
+      compact[at(v)] = static_cast<int>(vertex.size());
+      vertex.push_back(v);
+    }
+  MatrixX3i left(F.rows(), 3);
+  int rows = 0;
+  for (int f = 0; f < F.rows(); ++f) {
+    const int a = into[at(F(f, 0))], b = into[at(F(f, 1))], c = into[at(F(f, 2))];
+    if (a != b && b != c && c != a) left.row(rows++) << compact[at(a)], compact[at(b)], compact[at(c)];
+  }
+  left.conservativeResize(rows, 3);
+  return left;
+}
+
+/// Replays the collapses on plain faces, recording what each one changes.
+ProgressiveMesh replay(const TriangleMesh& mesh, const CollapseList& collapses) {
+  ProgressiveMesh p;
+  p.vertex_count = mesh.vertex_count();
+  p.coarsest = mesh.F;
+  p.alive.assign(at(mesh.face_count()), true);
+  std::vector<std::vector<int>> faces(at(mesh.vertex_count()));
+  for (int h = 0; h < mesh.halfedge_count(); ++h) faces[at(mesh.from(h))].push_back(h / 3);
+  for (const auto& [removed, kept] : collapses) {
+    std::array<int, 2> lost{-1, -1};
+    int n = 0;
+    for (int f : faces[at(removed)]) {
+      auto row = p.coarsest.row(f);
+      if (row[0] == kept || row[1] == kept || row[2] == kept) {
+        lost[at(n++)] = f;
+        p.alive[at(f)] = false;
+        for (int k = 0; k < 3; ++k)
+          if (row[k] != removed) std::erase(faces[at(row[k])], f);
+      } else {
+        for (int k = 0; k < 3; ++k)
+          if (row[k] == removed) row[k] = kept;
+        faces[at(kept)].push_back(f);
+        p.turned.push_back(f);
+      }
+    }
+    faces[at(removed)].clear();
+    p.removed.push_back(removed);
+    p.kept.push_back(kept);
+    p.lost.push_back(lost);
+    p.begin.push_back(static_cast<int>(p.turned.size()));
+  }
+  return p;
+}
+
+}  // namespace
+
+Result<ProgressiveMesh> make_progressive_mesh(const TriangleMesh& mesh, const ProgressiveOptions& options) {
+  CollapseList collapses;
+  if (mesh.vertex_count() > options.shape_vertices) collapses = decimate(mesh.V, mesh.F, options.shape_vertices, &options);
+  std::vector<int> vertex;
+  const MatrixX3i F = collapsed_faces(mesh.F, mesh.vertex_count(), collapses, vertex);
+  const MatrixX3d V = mesh.V(vertex, Eigen::all);
+  for (const auto& [removed, kept] : decimate(V, F, 4, nullptr)) collapses.emplace_back(vertex[at(removed)], vertex[at(kept)]);
+  const int left = mesh.vertex_count() - static_cast<int>(collapses.size());
+  if (left != 4)
+    return fail(ErrorCode::kNumerical,
+                fmt::format("progressive mesh: {} vertices cannot be collapsed further, 4 expected", left));
+  return replay(mesh, collapses);
+}
+
+Refinement::Refinement(const ProgressiveMesh& progressive)
+    : progressive_(&progressive),
+      next_(progressive.collapse_count()),
+      F_(progressive.coarsest),
+      alive_(progressive.alive),
+      faces_(at(progressive.vertex_count)) {
+  for (int f = 0; f < F_.rows(); ++f)
+    if (alive_[at(f)])
+      for (int k = 0; k < 3; ++k) faces_[at(F_(f, k))].push_back(f);
+}
+
+int Refinement::split() {
+  const ProgressiveMesh& p = *progressive_;
+  const size_t i = at(--next_);
+  const int removed = p.removed[i], kept = p.kept[i];
+  for (int j = p.begin[i]; j < p.begin[i + 1]; ++j) {
+    const int f = p.turned[at(j)];
+    for (int k = 0; k < 3; ++k)
+      if (F_(f, k) == kept) F_(f, k) = removed;
+    std::erase(faces_[at(kept)], f);
+    faces_[at(removed)].push_back(f);
+  }
+  for (int f : p.lost[i]) {
+    if (f < 0) continue;
+    alive_[at(f)] = true;
+    for (int k = 0; k < 3; ++k) faces_[at(F_(f, k))].push_back(f);
+  }
+  return removed;
+}
+
+MatrixX3i Refinement::compact_faces() const {
+  MatrixX3i faces(std::count(alive_.begin(), alive_.end(), true), 3);
+  int row = 0;
+  for (int f = 0; f < F_.rows(); ++f)
+    if (alive_[at(f)]) faces.row(row++) = F_.row(f);
+  return faces;
+}
+
+Result<MeshLevel> mesh_level(const TriangleMesh& mesh, const ProgressiveMesh& progressive, int vertices) {
+  Refinement refinement(progressive);
+  while (!refinement.done() && refinement.vertex_count() < vertices) refinement.split();
+  MatrixX3i F = refinement.compact_faces();
+  std::vector<int> level_vertex(at(mesh.vertex_count()), -1);
+  MeshLevel level;
+  for (int v = 0; v < mesh.vertex_count(); ++v)
+    if (!refinement.faces(v).empty()) {
+      level_vertex[at(v)] = static_cast<int>(level.vertex.size());
+      level.vertex.push_back(v);
+    }
+  MatrixX3d V(static_cast<Eigen::Index>(level.vertex.size()), 3);
+  for (int i = 0; i < V.rows(); ++i) V.row(i) = mesh.V.row(level.vertex[at(i)]);
+  F = F.unaryExpr([&](int v) { return level_vertex[at(v)]; }).eval();
+  auto made = make_mesh(std::move(V), std::move(F));
+  if (!made) return tl::unexpected(made.error());
+  level.mesh = std::move(*made);
+  return level;
+}
+
+}  // namespace crosspatch

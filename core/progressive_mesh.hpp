@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/mesh.hpp"
+
+namespace crosspatch {
+
+/// A mesh as a sequence of half-edge collapses (Hoppe 1996): every level is a closed manifold mesh on a subset of the vertices.
+///
+/// Invariants: (1) collapse i removes vertex removed[i] into its neighbour kept[i]; (2) it deletes the faces lost[i] and
+/// turns the corner removed[i] of the faces turned[begin[i] .. begin[i + 1]) into kept[i]; (3) `coarsest` holds the faces
+/// after all collapses; rows of deleted faces are stale and alive[f] is false.
+struct ProgressiveMesh {
+  std::vector<int> removed, kept;
+  std::vector<std::array<int, 2>> lost;
+  std::vector<int> begin{0};
+  std::vector<int> turned;
+  MatrixX3i coarsest;       ///< #F x 3
+  std::vector<bool> alive;  ///< #F
+  int vertex_count = 0;     ///< of the full mesh
+
+  [[nodiscard]] int collapse_count() const { return static_cast<int>(removed.size()); }
+};
+
+struct ProgressiveOptions {
+  /// Down to this many vertices a collapse may not turn a face by more than a right angle, nor remove a protected vertex:
+  /// these levels stand for the shape. Below, only the topology matters (they seed the spherical embedding).
+  int shape_vertices = 1600;
+  std::vector<int> protected_vertices = {};
+};
+
+/// Collapses a closed mesh of genus 0 to a tetrahedron, cheapest quadric error first (Garland & Heckbert 1997, OpenMesh).
+/// kNumerical when the collapses stop before four vertices are left.
+Result<ProgressiveMesh> make_progressive_mesh(const TriangleMesh& mesh, const ProgressiveOptions& options = {});
+
+/// A walk from the coarsest level back to the full mesh.
+class Refinement {
+ public:
+  explicit Refinement(const ProgressiveMesh& progressive);
+
+  /// Splits the vertex collapsed last; returns it. Precondition: !done().
+  int split();
+
+  [[nodiscard]] bool done() const { return next_ == 0; }
+  [[nodiscard]] int vertex_count() const { return progressive_->vertex_count - next_; }
+  /// Faces around v at this level, in no particular order.
+  [[nodiscard]] const std::vector<int>& faces(int v) const { return faces_[static_cast<std::size_t>(v)]; }
+  [[nodiscard]] const MatrixX3i& F() const { return F_; }
+  [[nodiscard]] bool alive(int f) const { return alive_[static_cast<std::size_t>(f)]; }
+  /// Vertex that the next split's vertex was collapsed into, i.e. the kept end of the last split.
+  [[nodiscard]] int last_kept() const { return progressive_->kept[static_cast<std::size_t>(next_)]; }
+  /// Faces of this level, compact, over the full mesh's vertex numbers.
+  [[nodiscard]] MatrixX3i compact_faces() const;
+
+ private:
+  const ProgressiveMesh* progressive_;
+  int next_;  ///< number of collapses still in force
+  MatrixX3i F_;
+  std::vector<bool> alive_;
+  std::vector<std::vector<int>> faces_;
+};
+
+/// One level as a mesh of its own.
+struct MeshLevel {
+  TriangleMesh mesh;
+  std::vector<int> vertex;  ///< per vertex of the level: its number in the full mesh
+};
+
+/// The level with `vertices` vertices (the coarsest one if fewer collapses were possible).
+Result<MeshLevel> mesh_level(const TriangleMesh& mesh, const ProgressiveMesh& progressive, int vertices);
+
+}  // namespace crosspatch

@@ -1,0 +1,170 @@
+#include "param/sphere_refinement.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+namespace crosspatch {
+namespace {
+
+using std::size_t;
+
+size_t at(int i) { return static_cast<size_t>(i); }
+
+using Polygon = std::vector<Vector2d>;
+
+/// The part of a convex polygon where n . p + c > 0.
+Polygon clip(const Polygon& polygon, const Vector2d& n, double c) {
+  Polygon inside;
+  for (size_t i = 0; i < polygon.size(); ++i) {
+    const Vector2d &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
+    const double a = n.dot(p) + c, b = n.dot(q) + c;
+    if (a > 0) inside.push_back(p);
+    if ((a > 0) != (b > 0)) inside.push_back(p + (q - p) * (a / (a - b)));
+  }
+  return inside;
+}
+
+Vector2d centroid(const Polygon& polygon) {
+  double area = 0;
+  Vector2d sum = Vector2d::Zero();
+  for (size_t i = 1; i + 1 < polygon.size(); ++i) {
+    const Vector2d u = polygon[i] - polygon[0], v = polygon[i + 1] - polygon[0];
+    const double a = u[0] * v[1] - u[1] * v[0];
+    area += a;
+    sum += a * (polygon[0] + polygon[i] + polygon[i + 1]) / 3;
+  }
+  return area > 0 ? Vector2d(sum / area) : polygon[0];
+}
+
+/// Places single vertices inside the rings of their neighbours.
+class Placer {
+ public:
+  Placer(const Refinement& refinement, const MatrixX3d& V, const Lift& lift, MatrixX3d& X, std::vector<int>& hint)
+      : refinement_(refinement), V_(V), lift_(lift), X_(X), hint_(hint) {}
+
+  /// Puts `v`, just split from `kept`, where its faces have the least energy. False if no place is left.
+  bool place(int v, int kept) {
+    collect(v);
+    const Vector3d center = X_.row(kept).transpose();
+    const Vector3d e1 = center.unitOrthogonal(), e2 = center.cross(e1);
+    // Gnomonic plane at the kept vertex: the ring's great circles are lines, and the kernel touches the origin.
+    constexpr double kReach = 4;
+    Polygon kernel{{-kReach, -kReach}, {kReach, -kReach}, {kReach, kReach}, {-kReach, kReach}};
+    for (const auto& [a, b] : ring_) {
+      // Differences from the centre keep the digits of small rings.
+      const Vector3d p = X_.row(a).transpose(), q = X_.row(b).transpose();
+      const Vector3d n = p.cross(q - p);
+      const double length = n.norm();
+      const double c = a == kept || b == kept ? 0 : center.dot((p - center).cross(q - center));
+      if (length > 0) kernel = clip(kernel, Vector2d(n.dot(e1), n.dot(e2)) / length, c / length);
+      if (kernel.size() < 3) return false;
+    }
+    const Vector2d middle = centroid(kernel);
+    const auto on_sphere = [&](const Vector2d& p) { return Vector3d((center + p[0] * e1 + p[1] * e2).normalized()); };
+    double best = std::numeric_limits<double>::infinity();
+    const auto consider = [&](const Vector3d& x) {
+      int face = hint_[at(kept)];
+      const double e = energy(v, x, face);
+      if (e < best) {
+        best = e;
+        X_.row(v) = x.transpose();
+        hint_[at(v)] = face;
+      }
+    };
+    consider(on_sphere(middle));
+    for (const double s : {0.5, 0.8})
+      for (const Vector2d& corner : kernel) consider(on_sphere(middle + s * (corner - middle)));
+    return std::isfinite(best);
+  }
+
+ private:
+  void collect(int v) {
+    ring_.clear();
+    rest_.clear();
+    for (int f : refinement_.faces(v)) {
+      int k = 0;
+      while (refinement_.F()(f, k) != v) ++k;
+      ring_.emplace_back(refinement_.F()(f, (k + 1) % 3), refinement_.F()(f, (k + 2) % 3));
+    }
+    MatrixX3i F(static_cast<int>(ring_.size()), 3);
+    for (int i = 0; i < F.rows(); ++i) F.row(i) << v, ring_[at(i)].first, ring_[at(i)].second;
+    const SphereProblem shapes = make_sphere_problem(F, V_, {});
+    rest_ = shapes.rest_inverse;
+    area_ = shapes.rest_area;
+  }
+
+  double energy(int v, const Vector3d& x, int& face) const {
+    const Vector3d y = lift_.point(x, face);
+    double sum = 0;
+    for (size_t i = 0; i < ring_.size(); ++i) {
+      const Vector3d p = X_.row(ring_[i].first).transpose(), q = X_.row(ring_[i].second).transpose();
+      if (!(x.dot((p - x).cross(q - x)) > 0)) return std::numeric_limits<double>::infinity();
+      int fp = hint_[at(ring_[i].first)], fq = hint_[at(ring_[i].second)];
+      sum += area_[static_cast<int>(i)] *
+             std::log(symmetric_dirichlet(rest_[i], y, lift_.point(p, fp), lift_.point(q, fq)));
+    }
+    static_cast<void>(v);
+    return sum;
+  }
+
+  const Refinement& refinement_;
+  const MatrixX3d& V_;
+  const Lift& lift_;
+  MatrixX3d& X_;
+  std::vector<int>& hint_;
+  std::vector<std::pair<int, int>> ring_;
+  std::vector<Eigen::Matrix2d> rest_;
+  Eigen::VectorXd area_;
+};
+
+/// A regular tetrahedron for the four vertices of the coarsest level.
+Status place_tetrahedron(const Refinement& refinement, MatrixX3d& X) {
+  const MatrixX3i F = refinement.compact_faces();
+  std::vector<int> corner;
+  for (int v = 0; v < X.rows(); ++v)
+    if (!refinement.faces(v).empty()) corner.push_back(v);
+  if (corner.size() != 4 || F.rows() != 4)
+    return fail(ErrorCode::kNumerical, fmt::format("spherical embedding: the coarsest level has {} vertices, not 4", corner.size()));
+  X.row(corner[0]) << 1, 1, 1;
+  X.row(corner[1]) << 1, -1, -1;
+  X.row(corner[2]) << -1, 1, -1;
+  X.row(corner[3]) << -1, -1, 1;
+  X /= std::sqrt(3.0);
+  if (smallest_orientation(F, X) < 0) X.row(corner[0]).swap(X.row(corner[1]));
+  if (!(smallest_orientation(F, X) > 0))
+    return fail(ErrorCode::kNumerical, "spherical embedding: the coarsest level is not a tetrahedron");
+  return {};
+}
+
+}  // namespace
+
+Status refine_on_sphere(Refinement& refinement, const MatrixX3d& V, const Lift& lift, const RefineOptions& options, MatrixX3d& X, std::vector<int>& hint) {
+  Placer placer(refinement, V, lift, X, hint);
+  int optimised_at = refinement.vertex_count();
+  while (!refinement.done() && refinement.vertex_count() < options.until_vertices) {
+    const int v = refinement.split();
+    if (!placer.place(v, refinement.last_kept()))
+      return fail(ErrorCode::kNumerical,
+                  fmt::format("spherical embedding: no place for vertex {} at level {}", v, refinement.vertex_count()));
+    const int n = refinement.vertex_count();
+    const bool last = refinement.done() || n >= options.until_vertices;
+    if (!last && n < options.growth * optimised_at) continue;
+    optimised_at = n;
+    auto rep = optimize_on_sphere(make_sphere_problem(refinement.compact_faces(), V, options.pinned), lift, options.optimizer, X, hint); if(getenv("DBG")) fprintf(stderr,"n %d it %d %g -> %g\n", n, rep.iterations, rep.energy_before, rep.energy_after);
+  }
+  return {};
+}
+
+Result<MatrixX3d> embed_in_sphere(const TriangleMesh& mesh, const ProgressiveMesh& progressive) {
+  Refinement refinement(progressive);
+  MatrixX3d X = MatrixX3d::Zero(mesh.vertex_count(), 3);
+  if (Status s = place_tetrahedron(refinement, X); !s) return tl::unexpected(s.error());
+  std::vector<int> hint(at(mesh.vertex_count()), 0);
+  const RefineOptions options{.until_vertices = mesh.vertex_count(), .growth = 1.5, .optimizer = {.max_iterations = 100, .relative_decrease = 1e-3, .logarithmic = false, .barrier = 0.1}};
+  if (Status s = refine_on_sphere(refinement, mesh.V, SphereLift(), options, X, hint); !s) return tl::unexpected(s.error());
+  return X;
+}
+
+}  // namespace crosspatch
