@@ -8,6 +8,7 @@
 #include <OpenMesh/Tools/Decimater/ModProgMeshT.hh>
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 
 namespace crosspatch {
@@ -84,40 +85,6 @@ MatrixX3i collapsed_faces(const MatrixX3i& F, int vertices, const CollapseList& 
   return left;
 }
 
-/// Replays the collapses on plain faces, recording what each one changes.
-ProgressiveMesh replay(const TriangleMesh& mesh, const CollapseList& collapses) {
-  ProgressiveMesh p;
-  p.vertex_count = mesh.vertex_count();
-  p.coarsest = mesh.F;
-  p.alive.assign(at(mesh.face_count()), true);
-  std::vector<std::vector<int>> faces(at(mesh.vertex_count()));
-  for (int h = 0; h < mesh.halfedge_count(); ++h) faces[at(mesh.from(h))].push_back(h / 3);
-  for (const auto& [removed, kept] : collapses) {
-    std::array<int, 2> lost{-1, -1};
-    int n = 0;
-    for (int f : faces[at(removed)]) {
-      auto row = p.coarsest.row(f);
-      if (row[0] == kept || row[1] == kept || row[2] == kept) {
-        lost[at(n++)] = f;
-        p.alive[at(f)] = false;
-        for (int k = 0; k < 3; ++k)
-          if (row[k] != removed) std::erase(faces[at(row[k])], f);
-      } else {
-        for (int k = 0; k < 3; ++k)
-          if (row[k] == removed) row[k] = kept;
-        faces[at(kept)].push_back(f);
-        p.turned.push_back(f);
-      }
-    }
-    faces[at(removed)].clear();
-    p.removed.push_back(removed);
-    p.kept.push_back(kept);
-    p.lost.push_back(lost);
-    p.begin.push_back(static_cast<int>(p.turned.size()));
-  }
-  return p;
-}
-
 }  // namespace
 
 Result<ProgressiveMesh> make_progressive_mesh(const TriangleMesh& mesh, const ProgressiveOptions& options) {
@@ -131,22 +98,28 @@ Result<ProgressiveMesh> make_progressive_mesh(const TriangleMesh& mesh, const Pr
   if (left != 4)
     return fail(ErrorCode::kNumerical,
                 fmt::format("progressive mesh: {} vertices cannot be collapsed further, 4 expected", left));
-  return replay(mesh, collapses);
+  ProgressiveMesh full;
+  full.vertex_count = mesh.vertex_count();
+  full.coarsest = mesh.F;
+  full.alive.assign(at(mesh.face_count()), true);
+  Refinement walk(std::move(full));
+  for (const auto& [removed, kept] : collapses) walk.collapse(removed, kept);
+  return std::move(walk).progressive();
 }
 
-Refinement::Refinement(const ProgressiveMesh& progressive)
-    : progressive_(&progressive),
-      next_(progressive.collapse_count()),
-      F_(progressive.coarsest),
-      alive_(progressive.alive),
-      faces_(at(progressive.vertex_count)) {
+Refinement::Refinement(ProgressiveMesh progressive)
+    : progressive_(std::move(progressive)),
+      next_(progressive_.collapse_count()),
+      F_(progressive_.coarsest),
+      alive_(progressive_.alive),
+      faces_(at(progressive_.vertex_count)) {
   for (int f = 0; f < F_.rows(); ++f)
     if (alive_[at(f)])
       for (int k = 0; k < 3; ++k) faces_[at(F_(f, k))].push_back(f);
 }
 
 int Refinement::split() {
-  const ProgressiveMesh& p = *progressive_;
+  const ProgressiveMesh& p = progressive_;
   const size_t i = at(--next_);
   const int removed = p.removed[i], kept = p.kept[i];
   for (int j = p.begin[i]; j < p.begin[i + 1]; ++j) {
@@ -157,11 +130,65 @@ int Refinement::split() {
     faces_[at(removed)].push_back(f);
   }
   for (int f : p.lost[i]) {
-    if (f < 0) continue;
     alive_[at(f)] = true;
     for (int k = 0; k < 3; ++k) faces_[at(F_(f, k))].push_back(f);
   }
   return removed;
+}
+
+void Refinement::collapse(int v, int kept) {
+  ProgressiveMesh& p = progressive_;
+  p.removed.resize(at(next_));
+  p.kept.resize(at(next_));
+  p.lost.resize(at(next_));
+  p.begin.resize(at(next_) + 1);
+  p.turned.resize(at(p.begin.back()));
+  std::array<int, 2> lost{-1, -1};
+  int n = 0;
+  for (int f : faces_[at(v)]) {
+    auto row = F_.row(f);
+    if (row[0] == kept || row[1] == kept || row[2] == kept) {
+      lost[at(n++)] = f;
+      alive_[at(f)] = false;
+      for (int k = 0; k < 3; ++k)
+        if (row[k] != v) std::erase(faces_[at(row[k])], f);
+    } else {
+      for (int k = 0; k < 3; ++k)
+        if (row[k] == v) row[k] = kept;
+      faces_[at(kept)].push_back(f);
+      p.turned.push_back(f);
+    }
+  }
+  faces_[at(v)].clear();
+  p.removed.push_back(v);
+  p.kept.push_back(kept);
+  p.lost.push_back(lost);
+  p.begin.push_back(static_cast<int>(p.turned.size()));
+  ++next_;
+}
+
+std::vector<int> Refinement::neighbours(int v) const {
+  std::vector<int> ring;
+  for (int f : faces_[at(v)])
+    for (int k = 0; k < 3; ++k)
+      if (F_(f, k) != v) ring.push_back(F_(f, k));
+  std::sort(ring.begin(), ring.end());
+  ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+  return ring;
+}
+
+bool Refinement::can_collapse(int v, int kept) const {
+  if (vertex_count() <= 4) return false;
+  const std::vector<int> a = neighbours(v), b = neighbours(kept);
+  std::vector<int> common;
+  std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(common));
+  return common.size() == 2 && std::binary_search(a.begin(), a.end(), kept);
+}
+
+ProgressiveMesh Refinement::progressive() && {
+  progressive_.coarsest = std::move(F_);
+  progressive_.alive = std::move(alive_);
+  return std::move(progressive_);
 }
 
 MatrixX3i Refinement::compact_faces() const {

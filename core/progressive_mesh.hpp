@@ -35,27 +35,37 @@ struct ProgressiveOptions {
 /// kNumerical when the collapses stop before four vertices are left.
 Result<ProgressiveMesh> make_progressive_mesh(const TriangleMesh& mesh, const ProgressiveOptions& options = {});
 
-/// A walk from the coarsest level back to the full mesh.
+/// A walk through the levels, from the coarsest towards the full mesh. Further collapses may be put on top; they are undone
+/// first.
 class Refinement {
  public:
-  explicit Refinement(const ProgressiveMesh& progressive);
+  explicit Refinement(ProgressiveMesh progressive);
 
-  /// Splits the vertex collapsed last; returns it. Precondition: !done().
+  /// Undoes the last collapse in force; returns its vertex. Precondition: !done().
   int split();
+  /// Collapses v into its neighbour `kept`. Precondition: can_collapse(v, kept).
+  void collapse(int v, int kept);
+  /// Whether the faces stay a closed manifold: v and `kept` have exactly two neighbours in common, and more than four
+  /// vertices are left.
+  [[nodiscard]] bool can_collapse(int v, int kept) const;
 
   [[nodiscard]] bool done() const { return next_ == 0; }
-  [[nodiscard]] int vertex_count() const { return progressive_->vertex_count - next_; }
-  /// Faces around v at this level, in no particular order.
+  [[nodiscard]] int vertex_count() const { return progressive_.vertex_count - next_; }
+  /// Faces around v at this level, in no particular order; empty if v is collapsed.
   [[nodiscard]] const std::vector<int>& faces(int v) const { return faces_[static_cast<std::size_t>(v)]; }
   [[nodiscard]] const MatrixX3i& F() const { return F_; }
   [[nodiscard]] bool alive(int f) const { return alive_[static_cast<std::size_t>(f)]; }
-  /// Vertex that the next split's vertex was collapsed into, i.e. the kept end of the last split.
-  [[nodiscard]] int last_kept() const { return progressive_->kept[static_cast<std::size_t>(next_)]; }
+  /// The kept end of the collapse undone last.
+  [[nodiscard]] int last_kept() const { return progressive_.kept[static_cast<std::size_t>(next_)]; }
   /// Faces of this level, compact, over the full mesh's vertex numbers.
   [[nodiscard]] MatrixX3i compact_faces() const;
+  /// The collapses in force, with this level as the coarsest. Precondition: nothing was split.
+  [[nodiscard]] ProgressiveMesh progressive() &&;
+  /// Neighbours of v, sorted.
+  [[nodiscard]] std::vector<int> neighbours(int v) const;
 
  private:
-  const ProgressiveMesh* progressive_;
+  ProgressiveMesh progressive_;
   int next_;  ///< number of collapses still in force
   MatrixX3i F_;
   std::vector<bool> alive_;

@@ -86,7 +86,7 @@ int MeshLift::locate(const Vector3d& x, int face) const {
     int leave = -1;
     for (int j = 0; j < 3 && leave < 0; ++j) {
       const int h = 3 * face + (j + turn) % 3;
-      if (side(h) < 0) leave = h;
+      if (side(h) < 0 && mesh_->twin[at(h)] >= 0) leave = h;
     }
     if (leave < 0) {
       // Three non-negative sides also hold at the face opposite on the sphere.

@@ -28,8 +28,9 @@ class SphereLift final : public Lift {
   Eigen::Matrix3d derivative(const Vector3d& x, int face) const override;
 };
 
-/// A closed mesh of genus 0 embedded in the unit sphere with great-circle edges: x goes to the point with the same
-/// central-projection barycentric coordinates in the face that holds it.
+/// A closed mesh of genus 0 embedded in the unit sphere with great-circle edges, or a disc in the plane z = 1: x goes to the
+/// point with the same central-projection barycentric coordinates in the face that holds it (outside the disc: the face
+/// where the walk met the boundary, coordinates clamped).
 class MeshLift final : public Lift {
  public:
   /// `X` (#V x 3, unit rows) embeds `mesh`: every face is positively oriented. Both must outlive the lift. The derivative is the

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -44,12 +45,13 @@ class Placer {
   Placer(const Refinement& refinement, const MatrixX3d& V, const Lift& lift, MatrixX3d& X, std::vector<int>& hint)
       : refinement_(refinement), V_(V), lift_(lift), X_(X), hint_(hint) {}
 
-  /// Puts `v`, just split from `kept`, where its faces have the least energy. False if no place is left.
-  bool place(int v, int kept) {
+  /// Puts `v` where its faces have the least energy. `near` is the vertex it was just split from, or v itself to move it from
+  /// a valid place. False if no place is left.
+  bool place(int v, int near) {
     collect(v);
-    const Vector3d center = X_.row(kept).transpose();
+    const Vector3d center = X_.row(near).transpose();
     const Vector3d e1 = center.unitOrthogonal(), e2 = center.cross(e1);
-    // Gnomonic plane at the kept vertex: the ring's great circles are lines, and the kernel touches the origin.
+    // Gnomonic plane: the ring's great circles are lines, and the kernel holds or touches the origin.
     constexpr double kReach = 4;
     Polygon kernel{{-kReach, -kReach}, {kReach, -kReach}, {kReach, kReach}, {-kReach, kReach}};
     for (const auto& [a, b] : ring_) {
@@ -57,7 +59,7 @@ class Placer {
       const Vector3d p = X_.row(a).transpose(), q = X_.row(b).transpose();
       const Vector3d n = p.cross(q - p);
       const double length = n.norm();
-      const double c = a == kept || b == kept ? 0 : center.dot((p - center).cross(q - center));
+      const double c = a == near || b == near ? 0 : center.dot((p - center).cross(q - center));
       if (length > 0) kernel = clip(kernel, Vector2d(n.dot(e1), n.dot(e2)) / length, c / length);
       if (kernel.size() < 3) return false;
     }
@@ -65,14 +67,15 @@ class Placer {
     const auto on_sphere = [&](const Vector2d& p) { return Vector3d((center + p[0] * e1 + p[1] * e2).normalized()); };
     double best = std::numeric_limits<double>::infinity();
     const auto consider = [&](const Vector3d& x) {
-      int face = hint_[at(kept)];
-      const double e = energy(v, x, face);
+      int face = hint_[at(near)];
+      const double e = energy(x, face);
       if (e < best) {
         best = e;
         X_.row(v) = x.transpose();
         hint_[at(v)] = face;
       }
     };
+    if (near == v) consider(center);
     consider(on_sphere(middle));
     for (const double s : {0.5, 0.8})
       for (const Vector2d& corner : kernel) consider(on_sphere(middle + s * (corner - middle)));
@@ -95,7 +98,7 @@ class Placer {
     area_ = shapes.rest_area;
   }
 
-  double energy(int v, const Vector3d& x, int& face) const {
+  double energy(const Vector3d& x, int& face) const {
     const Vector3d y = lift_.point(x, face);
     double sum = 0;
     for (size_t i = 0; i < ring_.size(); ++i) {
@@ -103,9 +106,8 @@ class Placer {
       if (!(x.dot((p - x).cross(q - x)) > 0)) return std::numeric_limits<double>::infinity();
       int fp = hint_[at(ring_[i].first)], fq = hint_[at(ring_[i].second)];
       sum += area_[static_cast<int>(i)] *
-             std::log(symmetric_dirichlet(rest_[i], y, lift_.point(p, fp), lift_.point(q, fq)));
+             symmetric_dirichlet(rest_[i], y, lift_.point(p, fp), lift_.point(q, fq));
     }
-    static_cast<void>(v);
     return sum;
   }
 
@@ -118,6 +120,20 @@ class Placer {
   std::vector<Eigen::Matrix2d> rest_;
   Eigen::VectorXd area_;
 };
+
+/// Vertices of faces whose energy exceeds `bound`.
+std::vector<int> vertices_above(const SphereProblem& problem, const Lift& lift, double bound, const MatrixX3d& X, std::vector<int>& hint) {
+  std::vector<int> vertices;
+  for (int f = 0; f < problem.F.rows(); ++f) {
+    Vector3d y[3];
+    for (int k = 0; k < 3; ++k) y[k] = lift.point(X.row(problem.F(f, k)).transpose(), hint[at(problem.F(f, k))]);
+    if (symmetric_dirichlet(problem.rest_inverse[at(f)], y[0], y[1], y[2]) > bound)
+      for (int k = 0; k < 3; ++k) vertices.push_back(problem.F(f, k));
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
 
 /// A regular tetrahedron for the four vertices of the coarsest level.
 Status place_tetrahedron(const Refinement& refinement, MatrixX3d& X) {
@@ -140,6 +156,16 @@ Status place_tetrahedron(const Refinement& refinement, MatrixX3d& X) {
 
 }  // namespace
 
+void relax_worst(const Refinement& level, const MatrixX3d& V, const Lift& lift, const std::vector<int>& pinned, MatrixX3d& X, std::vector<int>& hint) {
+  constexpr int kSweeps = 10;
+  constexpr double kBound = 40;  // a stretch beyond six in one direction
+  const SphereProblem problem = make_sphere_problem(level.compact_faces(), V, pinned);
+  Placer placer(level, V, lift, X, hint);
+  for (int sweep = 0; sweep < kSweeps; ++sweep)
+    for (int v : vertices_above(problem, lift, kBound, X, hint))
+      if (!problem.fixed[at(v)]) placer.place(v, v);
+}
+
 Status refine_on_sphere(Refinement& refinement, const MatrixX3d& V, const Lift& lift, const RefineOptions& options, MatrixX3d& X, std::vector<int>& hint) {
   Placer placer(refinement, V, lift, X, hint);
   int optimised_at = refinement.vertex_count();
@@ -152,7 +178,7 @@ Status refine_on_sphere(Refinement& refinement, const MatrixX3d& V, const Lift& 
     const bool last = refinement.done() || n >= options.until_vertices;
     if (!last && n < options.growth * optimised_at) continue;
     optimised_at = n;
-    auto rep = optimize_on_sphere(make_sphere_problem(refinement.compact_faces(), V, options.pinned), lift, options.optimizer, X, hint); if(getenv("DBG")) fprintf(stderr,"n %d it %d %g -> %g\n", n, rep.iterations, rep.energy_before, rep.energy_after);
+    optimize_on_sphere(make_sphere_problem(refinement.compact_faces(), V, options.pinned), lift, options.optimizer, X, hint);
   }
   return {};
 }

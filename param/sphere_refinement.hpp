@@ -20,6 +20,10 @@ struct RefineOptions {
 /// split are filled in. kNumerical where a kernel is empty in double precision.
 Status refine_on_sphere(Refinement& refinement, const MatrixX3d& V, const Lift& lift, const RefineOptions& options, MatrixX3d& X, std::vector<int>& hint);
 
+/// Moves the vertices of badly distorted faces, one at a time, to the best place inside the kernels of their rings: gets states
+/// going in which a few squeezed faces stop every common step. Arguments as in refine_on_sphere.
+void relax_worst(const Refinement& level, const MatrixX3d& V, const Lift& lift, const std::vector<int>& pinned, MatrixX3d& X, std::vector<int>& hint);
+
 /// An embedding of a closed mesh of genus 0 and area 1 in the unit sphere (#V x 3, unit rows), every face positively oriented,
 /// with low symmetric Dirichlet energy to the sphere of area 1. kNumerical where a level cannot be embedded.
 Result<MatrixX3d> embed_in_sphere(const TriangleMesh& mesh, const ProgressiveMesh& progressive);
