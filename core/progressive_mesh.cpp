@@ -16,7 +16,9 @@ namespace {
 
 using std::size_t;
 
-size_t at(int i) { return static_cast<size_t>(i); }
+size_t at(int i) {
+  return static_cast<size_t>(i);
+}
 
 struct DoubleTraits : OpenMesh::DefaultTraits {
   using Point = OpenMesh::Vec3d;
@@ -43,7 +45,10 @@ OmMesh to_openmesh(const MatrixX3d& V, const MatrixX3i& F) {
 using CollapseList = std::vector<std::pair<int, int>>;
 
 /// The collapses (removed, kept) that bring the mesh down to `vertices`, cheapest first.
-CollapseList decimate(const MatrixX3d& V, const MatrixX3i& F, int vertices, const ProgressiveOptions* keep_shape) {
+CollapseList decimate(const MatrixX3d& V,
+                      const MatrixX3i& F,
+                      int vertices,
+                      const ProgressiveOptions* keep_shape) {
   OmMesh om = to_openmesh(V, F);
   OpenMesh::Decimater::DecimaterT<OmMesh> decimater(om);
   OpenMesh::Decimater::ModQuadricT<OmMesh>::Handle quadric;
@@ -53,22 +58,28 @@ CollapseList decimate(const MatrixX3d& V, const MatrixX3i& F, int vertices, cons
   decimater.module(quadric).unset_max_err();
   decimater.add(history);
   if (keep_shape != nullptr) {
-    for (int v : keep_shape->protected_vertices) om.status(om.vertex_handle(static_cast<unsigned>(v))).set_locked(true);
+    for (int v : keep_shape->protected_vertices)
+      om.status(om.vertex_handle(static_cast<unsigned>(v))).set_locked(true);
     decimater.add(turning);
     decimater.module(turning).set_max_normal_deviation(90);
   }
   CollapseList collapses;
   if (!decimater.initialize()) return collapses;
   decimater.decimate_to(at(vertices));
-  for (const auto& info : decimater.module(history).infolist()) collapses.emplace_back(info.v0.idx(), info.v1.idx());
+  for (const auto& info : decimater.module(history).infolist())
+    collapses.emplace_back(info.v0.idx(), info.v1.idx());
   return collapses;
 }
 
 /// The faces left by the collapses, over the vertices left; `vertex` gives their numbers before.
-MatrixX3i collapsed_faces(const MatrixX3i& F, int vertices, const CollapseList& collapses, std::vector<int>& vertex) {
+MatrixX3i collapsed_faces(const MatrixX3i& F,
+                          int vertices,
+                          const CollapseList& collapses,
+                          std::vector<int>& vertex) {
   std::vector<int> into(at(vertices));
   std::iota(into.begin(), into.end(), 0);
-  for (auto it = collapses.rbegin(); it != collapses.rend(); ++it) into[at(it->first)] = into[at(it->second)];
+  for (auto it = collapses.rbegin(); it != collapses.rend(); ++it)
+    into[at(it->first)] = into[at(it->second)];
   std::vector<int> compact(at(vertices), -1);
   for (int v = 0; v < vertices; ++v)
     if (into[at(v)] == v) {
@@ -79,7 +90,8 @@ MatrixX3i collapsed_faces(const MatrixX3i& F, int vertices, const CollapseList& 
   int rows = 0;
   for (int f = 0; f < F.rows(); ++f) {
     const int a = into[at(F(f, 0))], b = into[at(F(f, 1))], c = into[at(F(f, 2))];
-    if (a != b && b != c && c != a) left.row(rows++) << compact[at(a)], compact[at(b)], compact[at(c)];
+    if (a != b && b != c && c != a)
+      left.row(rows++) << compact[at(a)], compact[at(b)], compact[at(c)];
   }
   left.conservativeResize(rows, 3);
   return left;
@@ -87,17 +99,21 @@ MatrixX3i collapsed_faces(const MatrixX3i& F, int vertices, const CollapseList& 
 
 }  // namespace
 
-Result<ProgressiveMesh> make_progressive_mesh(const TriangleMesh& mesh, const ProgressiveOptions& options) {
+Result<ProgressiveMesh> make_progressive_mesh(const TriangleMesh& mesh,
+                                              const ProgressiveOptions& options) {
   CollapseList collapses;
-  if (mesh.vertex_count() > options.shape_vertices) collapses = decimate(mesh.V, mesh.F, options.shape_vertices, &options);
+  if (mesh.vertex_count() > options.shape_vertices)
+    collapses = decimate(mesh.V, mesh.F, options.shape_vertices, &options);
   std::vector<int> vertex;
   const MatrixX3i F = collapsed_faces(mesh.F, mesh.vertex_count(), collapses, vertex);
   const MatrixX3d V = mesh.V(vertex, Eigen::all);
-  for (const auto& [removed, kept] : decimate(V, F, 4, nullptr)) collapses.emplace_back(vertex[at(removed)], vertex[at(kept)]);
+  for (const auto& [removed, kept] : decimate(V, F, 4, nullptr))
+    collapses.emplace_back(vertex[at(removed)], vertex[at(kept)]);
   const int left = mesh.vertex_count() - static_cast<int>(collapses.size());
   if (left != 4)
-    return fail(ErrorCode::kNumerical,
-                fmt::format("progressive mesh: {} vertices cannot be collapsed further, 4 expected", left));
+    return fail(
+        ErrorCode::kNumerical,
+        fmt::format("progressive mesh: {} vertices cannot be collapsed further, 4 expected", left));
   ProgressiveMesh full;
   full.vertex_count = mesh.vertex_count();
   full.coarsest = mesh.F;
@@ -199,7 +215,9 @@ MatrixX3i Refinement::compact_faces() const {
   return faces;
 }
 
-Result<MeshLevel> mesh_level(const TriangleMesh& mesh, const ProgressiveMesh& progressive, int vertices) {
+Result<MeshLevel> mesh_level(const TriangleMesh& mesh,
+                             const ProgressiveMesh& progressive,
+                             int vertices) {
   Refinement refinement(progressive);
   while (!refinement.done() && refinement.vertex_count() < vertices) refinement.split();
   MatrixX3i F = refinement.compact_faces();

@@ -7,11 +7,13 @@
 
 namespace crosspatch {
 
-/// A mesh as a sequence of half-edge collapses (Hoppe 1996): every level is a closed manifold mesh on a subset of the vertices.
+/// A mesh as a sequence of half-edge collapses (Hoppe 1996): every level is a closed manifold mesh
+/// on a subset of the vertices.
 ///
-/// Invariants: (1) collapse i removes vertex removed[i] into its neighbour kept[i]; (2) it deletes the faces lost[i] and
-/// turns the corner removed[i] of the faces turned[begin[i] .. begin[i + 1]) into kept[i]; (3) `coarsest` holds the faces
-/// after all collapses; rows of deleted faces are stale and alive[f] is false.
+/// Invariants: (1) collapse i removes vertex removed[i] into its neighbour kept[i]; (2) it deletes
+/// the faces lost[i] and turns the corner removed[i] of the faces turned[begin[i] .. begin[i + 1])
+/// into kept[i]; (3) `coarsest` holds the faces after all collapses; rows of deleted faces are
+/// stale and alive[f] is false.
 struct ProgressiveMesh {
   std::vector<int> removed, kept;
   std::vector<std::array<int, 2>> lost;
@@ -25,18 +27,20 @@ struct ProgressiveMesh {
 };
 
 struct ProgressiveOptions {
-  /// Down to this many vertices a collapse may not turn a face by more than a right angle, nor remove a protected vertex:
-  /// these levels stand for the shape. Below, only the topology matters (they seed the spherical embedding).
+  /// Down to this many vertices a collapse may not turn a face by more than a right angle, nor
+  /// remove a protected vertex: these levels stand for the shape. Below, only the topology matters
+  /// (they seed the spherical embedding).
   int shape_vertices = 1600;
   std::vector<int> protected_vertices = {};
 };
 
-/// Collapses a closed mesh of genus 0 to a tetrahedron, cheapest quadric error first (Garland & Heckbert 1997, OpenMesh).
-/// kNumerical when the collapses stop before four vertices are left.
-Result<ProgressiveMesh> make_progressive_mesh(const TriangleMesh& mesh, const ProgressiveOptions& options = {});
+/// Collapses a closed mesh of genus 0 to a tetrahedron, cheapest quadric error first (Garland &
+/// Heckbert 1997, OpenMesh). kNumerical when the collapses stop before four vertices are left.
+Result<ProgressiveMesh> make_progressive_mesh(const TriangleMesh& mesh,
+                                              const ProgressiveOptions& options = {});
 
-/// A walk through the levels, from the coarsest towards the full mesh. Further collapses may be put on top; they are undone
-/// first.
+/// A walk through the levels, from the coarsest towards the full mesh. Further collapses may be put
+/// on top; they are undone first.
 class Refinement {
  public:
   explicit Refinement(ProgressiveMesh progressive);
@@ -45,14 +49,16 @@ class Refinement {
   int split();
   /// Collapses v into its neighbour `kept`. Precondition: can_collapse(v, kept).
   void collapse(int v, int kept);
-  /// Whether the faces stay a closed manifold: v and `kept` have exactly two neighbours in common, and more than four
-  /// vertices are left.
+  /// Whether the faces stay a closed manifold: v and `kept` have exactly two neighbours in common,
+  /// and more than four vertices are left.
   [[nodiscard]] bool can_collapse(int v, int kept) const;
 
   [[nodiscard]] bool done() const { return next_ == 0; }
   [[nodiscard]] int vertex_count() const { return progressive_.vertex_count - next_; }
   /// Faces around v at this level, in no particular order; empty if v is collapsed.
-  [[nodiscard]] const std::vector<int>& faces(int v) const { return faces_[static_cast<std::size_t>(v)]; }
+  [[nodiscard]] const std::vector<int>& faces(int v) const {
+    return faces_[static_cast<std::size_t>(v)];
+  }
   [[nodiscard]] const MatrixX3i& F() const { return F_; }
   [[nodiscard]] bool alive(int f) const { return alive_[static_cast<std::size_t>(f)]; }
   /// The kept end of the collapse undone last.
@@ -79,6 +85,8 @@ struct MeshLevel {
 };
 
 /// The level with `vertices` vertices (the coarsest one if fewer collapses were possible).
-Result<MeshLevel> mesh_level(const TriangleMesh& mesh, const ProgressiveMesh& progressive, int vertices);
+Result<MeshLevel> mesh_level(const TriangleMesh& mesh,
+                             const ProgressiveMesh& progressive,
+                             int vertices);
 
 }  // namespace crosspatch

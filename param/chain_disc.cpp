@@ -17,7 +17,9 @@ namespace {
 
 using std::size_t;
 
-size_t at(int i) { return static_cast<size_t>(i); }
+size_t at(int i) {
+  return static_cast<size_t>(i);
+}
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -29,7 +31,8 @@ class Splitter {
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
   [[nodiscard]] const std::vector<std::array<int, 2>>& split_edges() const { return split_edges_; }
 
-  /// Inserts the midpoint m of half-edge h = (u, v): its face (u, v, w) becomes (u, m, w) and (m, v, w), likewise across.
+  /// Inserts the midpoint m of half-edge h = (u, v): its face (u, v, w) becomes (u, m, w) and (m,
+  /// v, w), likewise across.
   int split(int h) {
     const int g = mesh_.twin[at(h)];
     const int m = mesh_.vertex_count(), f = mesh_.face_count();
@@ -41,7 +44,8 @@ class Splitter {
     mesh_.out.push_back(-1);
     halve(h, m, f);
     halve(g, m, f + 1);
-    // Halves of the edge: h is now (u, m), the new face's first side (m, v); g is (v, m), its new face's (m, u).
+    // Halves of the edge: h is now (u, m), the new face's first side (m, v); g is (v, m), its new
+    // face's (m, u).
     pair(h, 3 * (f + 1));
     pair(g, 3 * f);
     mesh_.out[at(m)] = 3 * f;
@@ -73,10 +77,13 @@ class Splitter {
   std::vector<std::array<int, 2>> split_edges_;
 };
 
-/// Shortest paths over vertices and edge midpoints: node v < #V is a vertex, #V + h the midpoint of edge min(h, twin(h)).
+/// Shortest paths over vertices and edge midpoints: node v < #V is a vertex, #V + h the midpoint of
+/// edge min(h, twin(h)).
 class PathTracer {
  public:
-  PathTracer(const TriangleMesh& mesh, const std::vector<bool>& blocked, const std::vector<bool>& blocked_edge)
+  PathTracer(const TriangleMesh& mesh,
+             const std::vector<bool>& blocked,
+             const std::vector<bool>& blocked_edge)
       : mesh_(mesh), blocked_(blocked), blocked_edge_(blocked_edge), n_(mesh.vertex_count()) {}
 
   /// Nodes from `source` to `target`, both included; empty if there is no way.
@@ -120,7 +127,9 @@ class PathTracer {
 
   [[nodiscard]] int midpoint(int h) const { return n_ + std::min(h, mesh_.twin[at(h)]); }
 
-  void step(int from, int to) { reach(to, distance_[at(from)] + (place(from) - place(to)).norm(), from); }
+  void step(int from, int to) {
+    reach(to, distance_[at(from)] + (place(from) - place(to)).norm(), from);
+  }
 
   void visit_neighbours(int node) {
     if (node < n_) {
@@ -158,32 +167,41 @@ Result<Chain> trace_chain(Splitter& splitter, const std::vector<int>& landmarks)
   Chain chain{{landmarks[0]}, {0}};
   for (size_t i = 0; i + 1 < landmarks.size(); ++i) {
     const TriangleMesh& mesh = splitter.mesh();
-    std::vector<bool> blocked(at(mesh.vertex_count()), false), blocked_edge(at(mesh.halfedge_count()), false);
+    std::vector<bool> blocked(at(mesh.vertex_count()), false),
+        blocked_edge(at(mesh.halfedge_count()), false);
     for (int v : landmarks) blocked[at(v)] = true;
     for (int v : chain.vertices) blocked[at(v)] = true;
     for (size_t j = 0; j + 1 < chain.vertices.size(); ++j) {
       const int h = find_halfedge(mesh, chain.vertices[j], chain.vertices[j + 1]);
       blocked_edge[at(h)] = blocked_edge[at(mesh.twin[at(h)])] = true;
     }
-    const std::vector<int> path = PathTracer(mesh, blocked, blocked_edge).trace(landmarks[i], landmarks[i + 1]);
+    const std::vector<int> path =
+        PathTracer(mesh, blocked, blocked_edge).trace(landmarks[i], landmarks[i + 1]);
     if (path.size() < 2)
-      return fail(ErrorCode::kNumerical,
-                  fmt::format("chain: no way from vertex {} to vertex {}", landmarks[i], landmarks[i + 1]));
+      return fail(
+          ErrorCode::kNumerical,
+          fmt::format("chain: no way from vertex {} to vertex {}", landmarks[i], landmarks[i + 1]));
     // Ends of the crossed edges survive the other splits, half-edge numbers need not.
     const int n = mesh.vertex_count();
     std::vector<std::array<int, 2>> steps;
     for (int node : path)
-      steps.push_back(node < n ? std::array{node, -1} : std::array{mesh.from(node - n), mesh.to(node - n)});
+      steps.push_back(node < n ? std::array{node, -1}
+                               : std::array{mesh.from(node - n), mesh.to(node - n)});
     for (size_t j = 1; j < steps.size(); ++j)
       chain.vertices.push_back(steps[j][1] < 0 ? steps[j][0]
-                                               : splitter.split(find_halfedge(splitter.mesh(), steps[j][0], steps[j][1])));
+                                               : splitter.split(find_halfedge(
+                                                     splitter.mesh(), steps[j][0], steps[j][1])));
     chain.corners.push_back(static_cast<int>(chain.vertices.size()) - 1);
   }
   return chain;
 }
 
-/// Gives the faces right of the chain copies of its inner vertices. Returns the boundary loop, surface on the left.
-std::vector<int> cut_open(const TriangleMesh& mesh, const std::vector<int>& chain, MatrixX3i& F, std::vector<int>& vertex) {
+/// Gives the faces right of the chain copies of its inner vertices. Returns the boundary loop,
+/// surface on the left.
+std::vector<int> cut_open(const TriangleMesh& mesh,
+                          const std::vector<int>& chain,
+                          MatrixX3i& F,
+                          std::vector<int>& vertex) {
   std::vector<int> right;
   for (size_t i = 1; i + 1 < chain.size(); ++i) {
     const int copy = static_cast<int>(vertex.size());
@@ -191,7 +209,8 @@ std::vector<int> cut_open(const TriangleMesh& mesh, const std::vector<int>& chai
     right.push_back(copy);
     // Counter-clockwise from the way back to the way on: the faces on the chain's right.
     const int stop = find_halfedge(mesh, chain[i], chain[i + 1]);
-    for (int h = find_halfedge(mesh, chain[i], chain[i - 1]); h != stop; h = mesh.twin[at(prev(h))]) F(h / 3, h % 3) = copy;
+    for (int h = find_halfedge(mesh, chain[i], chain[i - 1]); h != stop; h = mesh.twin[at(prev(h))])
+      F(h / 3, h % 3) = copy;
   }
   std::vector<int> loop = chain;
   loop.insert(loop.end(), right.rbegin(), right.rend());
@@ -199,7 +218,9 @@ std::vector<int> cut_open(const TriangleMesh& mesh, const std::vector<int>& chai
 }
 
 /// Places of the loop on the unit circle: sides of equal angle, divided by arc length.
-MatrixX2d circle_positions(const TriangleMesh& mesh, const std::vector<int>& chain, const std::vector<int>& corners) {
+MatrixX2d circle_positions(const TriangleMesh& mesh,
+                           const std::vector<int>& chain,
+                           const std::vector<int>& corners) {
   const int sides = 2 * (static_cast<int>(corners.size()) - 1);
   const int n = static_cast<int>(chain.size());
   std::vector<double> angle(at(n), 0);
@@ -210,7 +231,8 @@ MatrixX2d circle_positions(const TriangleMesh& mesh, const std::vector<int>& cha
       angle[at(i + 1)] = length;
     }
     for (int i = corners[s] + 1; i <= corners[s + 1]; ++i)
-      angle[at(i)] = 2 * std::numbers::pi / sides * (static_cast<double>(s) + angle[at(i)] / length);
+      angle[at(i)] =
+          2 * std::numbers::pi / sides * (static_cast<double>(s) + angle[at(i)] / length);
   }
   MatrixX2d positions(2 * (n - 1), 2);
   for (int i = 0; i < positions.rows(); ++i) {
@@ -221,7 +243,8 @@ MatrixX2d circle_positions(const TriangleMesh& mesh, const std::vector<int>& cha
 }
 
 double one_way_distortion(const ChainDisc& a, const ChainDisc& b) {
-  // A face that falls into a line has no finite energy; this one is far beyond any face of a usable map.
+  // A face that falls into a line has no finite energy; this one is far beyond any face of a usable
+  // map.
   constexpr double kWorst = 1e8;
   const MatrixX3d image = through_disc(a, b, b.mesh.V);
   const SphereProblem rest = make_sphere_problem(a.mesh.F, a.mesh.V, {});
@@ -255,8 +278,10 @@ Result<ChainDisc> cut_along_chain(const TriangleMesh& mesh, const std::vector<in
   if (!cut) return tl::unexpected(cut.error());
   disc.mesh = std::move(*cut);
   for (size_t i = 0; i + 1 < chain->vertices.size(); ++i)
-    disc.chain_length += (refined.position(chain->vertices[i]) - refined.position(chain->vertices[i + 1])).norm();
-  const auto uv = tutte_embedding(disc.mesh, loop, circle_positions(refined, chain->vertices, chain->corners));
+    disc.chain_length +=
+        (refined.position(chain->vertices[i]) - refined.position(chain->vertices[i + 1])).norm();
+  const auto uv =
+      tutte_embedding(disc.mesh, loop, circle_positions(refined, chain->vertices, chain->corners));
   if (!uv) return tl::unexpected(uv.error());
   disc.domain.resize(uv->rows(), 3);
   disc.domain << *uv, Eigen::VectorXd::Ones(uv->rows());
@@ -268,7 +293,8 @@ MatrixX3d to_disc(const ChainDisc& disc, const MatrixX3d& values) {
   MatrixX3d all(n + static_cast<int>(disc.split_edges.size()), 3);
   all.topRows(n) = values;
   for (size_t i = 0; i < disc.split_edges.size(); ++i)
-    all.row(n + static_cast<int>(i)) = (all.row(disc.split_edges[i][0]) + all.row(disc.split_edges[i][1])) / 2;
+    all.row(n + static_cast<int>(i)) =
+        (all.row(disc.split_edges[i][0]) + all.row(disc.split_edges[i][1])) / 2;
   return all(disc.vertex, Eigen::all);
 }
 
@@ -294,6 +320,8 @@ MatrixX3d through_disc(const ChainDisc& a, const ChainDisc& b, const MatrixX3d& 
   return result;
 }
 
-double disc_distortion(const ChainDisc& a, const ChainDisc& b) { return (one_way_distortion(a, b) + one_way_distortion(b, a)) / 2; }
+double disc_distortion(const ChainDisc& a, const ChainDisc& b) {
+  return (one_way_distortion(a, b) + one_way_distortion(b, a)) / 2;
+}
 
 }  // namespace crosspatch

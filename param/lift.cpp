@@ -8,14 +8,18 @@ namespace {
 
 using std::size_t;
 
-size_t at(int i) { return static_cast<size_t>(i); }
+size_t at(int i) {
+  return static_cast<size_t>(i);
+}
 
 /// Radius of the sphere of area 1.
 const double kRadius = 1 / std::sqrt(4 * std::numbers::pi);
 
 }  // namespace
 
-Vector3d SphereLift::point(const Vector3d& x, int& /*face*/) const { return kRadius * x; }
+Vector3d SphereLift::point(const Vector3d& x, int& /*face*/) const {
+  return kRadius * x;
+}
 
 Eigen::Matrix3d SphereLift::derivative(const Vector3d& /*x*/, int /*face*/) const {
   return kRadius * Eigen::Matrix3d::Identity();
@@ -80,7 +84,8 @@ int MeshLift::locate(const Vector3d& x, int face) const {
     const Vector3d a = X_->row(mesh_->from(h)), b = X_->row(mesh_->to(h));
     return x.dot((a - x).cross(b - x));
   };
-  // The walk starts at another side of each face it enters, which breaks the cycles a visibility walk can fall into.
+  // The walk starts at another side of each face it enters, which breaks the cycles a visibility
+  // walk can fall into.
   int turn = 0;
   for (int steps = 0; steps < mesh_->face_count(); ++steps) {
     int leave = -1;

@@ -15,9 +15,11 @@ class Lift {
   Lift& operator=(const Lift&) = delete;
   virtual ~Lift() = default;
 
-  /// Image of the unit vector x. `face` is a guess where to look, and on return the face that holds x.
+  /// Image of the unit vector x. `face` is a guess where to look, and on return the face that holds
+  /// x.
   virtual Vector3d point(const Vector3d& x, int& face) const = 0;
-  /// 3 x 3 derivative of point() at x, known to lie in `face`; only its action on vectors orthogonal to x counts.
+  /// 3 x 3 derivative of point() at x, known to lie in `face`; only its action on vectors
+  /// orthogonal to x counts.
   virtual Eigen::Matrix3d derivative(const Vector3d& x, int face) const = 0;
 };
 
@@ -28,14 +30,16 @@ class SphereLift final : public Lift {
   Eigen::Matrix3d derivative(const Vector3d& x, int face) const override;
 };
 
-/// A closed mesh of genus 0 embedded in the unit sphere with great-circle edges, or a disc in the plane z = 1: x goes to the
-/// point with the same central-projection barycentric coordinates in the face that holds it (outside the disc: the face
-/// where the walk met the boundary, coordinates clamped).
+/// A closed mesh of genus 0 embedded in the unit sphere with great-circle edges, or a disc in the
+/// plane z = 1: x goes to the point with the same central-projection barycentric coordinates in the
+/// face that holds it (outside the disc: the face where the walk met the boundary, coordinates
+/// clamped).
 class MeshLift final : public Lift {
  public:
-  /// `X` (#V x 3, unit rows) embeds `mesh`: every face is positively oriented. Both must outlive the lift. The derivative is the
-  /// face's own where smoothing_rounds == 0, else that of the vertices averaged so many times over their neighbours: facets
-  /// make the exact one too noisy for an optimiser that looks further than one facet.
+  /// `X` (#V x 3, unit rows) embeds `mesh`: every face is positively oriented. Both must outlive
+  /// the lift. The derivative is the face's own where smoothing_rounds == 0, else that of the
+  /// vertices averaged so many times over their neighbours: facets make the exact one too noisy for
+  /// an optimiser that looks further than one facet.
   MeshLift(const TriangleMesh& mesh, const MatrixX3d& X, int smoothing_rounds);
 
   Vector3d point(const Vector3d& x, int& face) const override;

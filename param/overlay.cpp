@@ -1,9 +1,10 @@
 // Overlay of two triangulations of the sphere.
 //
-// Each edge of one mesh is walked through the faces of the other; the sequence of crossed edges is exact. A crossing is
-// known by its pair of edges. The walks in both directions give the order of crossings along the edges of both meshes, so
-// nothing is ever sorted by inexact parameters. Segments between consecutive nodes become pairs of darts; rotations at the nodes
-// are known, and the polygons are the orbits of "arrive, turn to the next dart clockwise".
+// Each edge of one mesh is walked through the faces of the other; the sequence of crossed edges is
+// exact. A crossing is known by its pair of edges. The walks in both directions give the order of
+// crossings along the edges of both meshes, so nothing is ever sorted by inexact parameters.
+// Segments between consecutive nodes become pairs of darts; rotations at the nodes are known, and
+// the polygons are the orbits of "arrive, turn to the next dart clockwise".
 #include "param/overlay.hpp"
 
 #include <fmt/format.h>
@@ -21,7 +22,9 @@ namespace {
 
 using std::size_t;
 
-size_t at(int i) { return static_cast<size_t>(i); }
+size_t at(int i) {
+  return static_cast<size_t>(i);
+}
 
 /// Raised where a vertex lies on an edge of the other mesh.
 struct Special {
@@ -38,12 +41,16 @@ struct Embedded {
 
 /// Where the edges of one mesh run in the other.
 struct Walks {
-  std::vector<int> same;                    ///< per vertex: the coinciding vertex of the other mesh, or -1
-  std::vector<int> face;                    ///< per vertex: the face of the other mesh that holds it (-1 if it coincides)
-  std::vector<std::vector<int>> crossed;    ///< per half-edge h < twin: the other mesh's half-edges it leaves faces through
-  std::vector<std::vector<int>> through;    ///< per half-edge h < twin: the faces it runs in, one more than crossed
-  std::vector<int> coincident;              ///< per half-edge: the other mesh's half-edge it lies on, or -1
-  std::vector<int> sector;                  ///< per half-edge from a coinciding vertex: the other mesh's half-edge clockwise of it
+  std::vector<int> same;  ///< per vertex: the coinciding vertex of the other mesh, or -1
+  std::vector<int>
+      face;  ///< per vertex: the face of the other mesh that holds it (-1 if it coincides)
+  std::vector<std::vector<int>>
+      crossed;  ///< per half-edge h < twin: the other mesh's half-edges it leaves faces through
+  std::vector<std::vector<int>>
+      through;  ///< per half-edge h < twin: the faces it runs in, one more than crossed
+  std::vector<int> coincident;  ///< per half-edge: the other mesh's half-edge it lies on, or -1
+  std::vector<int> sector;  ///< per half-edge from a coinciding vertex: the other mesh's half-edge
+                            ///< clockwise of it
 };
 
 struct RowHash {
@@ -59,7 +66,9 @@ struct RowHash {
 };
 
 std::vector<int> coinciding(const Embedded& a, const Embedded& b) {
-  const auto key = [](const Embedded& m, int v) { return std::array{m.X(v, 0), m.X(v, 1), m.X(v, 2)}; };
+  const auto key = [](const Embedded& m, int v) {
+    return std::array{m.X(v, 0), m.X(v, 1), m.X(v, 2)};
+  };
   std::unordered_map<std::array<double, 3>, int, RowHash> vertex;
   for (int v = 0; v < b.mesh.vertex_count(); ++v) vertex.emplace(key(b, v), v);
   std::vector<int> same(at(a.mesh.vertex_count()), -1);
@@ -117,7 +126,9 @@ class Walker {
   }
 
   /// Side of b's vertex seen along a's directed edge u -> v.
-  [[nodiscard]] int side(int u, int v, int b_vertex) const { return orient_sphere(a_.x(u), a_.x(v), b_.x(b_vertex)); }
+  [[nodiscard]] int side(int u, int v, int b_vertex) const {
+    return orient_sphere(a_.x(u), a_.x(v), b_.x(b_vertex));
+  }
 
   /// Half-edge h leaves a vertex that coincides with b's vertex p: the sector of p it runs into.
   void find_sector(int h) {
@@ -125,7 +136,8 @@ class Walker {
     for_each_outgoing(b_.mesh, p, [&](int g) {
       if (walks_.sector[at(h)] >= 0 || walks_.coincident[at(h)] >= 0) return;
       const int right = side(u, v, b_.mesh.to(g)), left = side(u, v, b_.mesh.tip(g));
-      const bool ahead = b_.x(b_.mesh.to(g)).dot(a_.x(v) - a_.x(u)) > b_.x(p).dot(a_.x(v) - a_.x(u));
+      const bool ahead =
+          b_.x(b_.mesh.to(g)).dot(a_.x(v) - a_.x(u)) > b_.x(p).dot(a_.x(v) - a_.x(u));
       if (right == 0 && ahead) {
         if (walks_.same[at(v)] != b_.mesh.to(g)) throw Special{walks_.same[at(v)] >= 0 ? u : v};
         walks_.coincident[at(h)] = g;
@@ -151,7 +163,8 @@ class Walker {
     } else {
       face = walks_.face[at(u)];
       for (int k = 0; k < 3 && !ends_in(face); ++k) {
-        const int g = 3 * face + k, right = side(u, v, b_.mesh.from(g)), left = side(u, v, b_.mesh.to(g));
+        const int g = 3 * face + k, right = side(u, v, b_.mesh.from(g)),
+                  left = side(u, v, b_.mesh.to(g));
         if (right == 0 || left == 0) throw Special{u};
         if (right < 0 && left > 0) leave = g;
       }
@@ -166,7 +179,8 @@ class Walker {
       if (ends_in(face)) break;
       const int apex = side(u, v, b_.mesh.tip(enter));
       if (apex == 0) throw Special{u};
-      // enter = (q, p) with p on the right: an apex on the left is left behind through (p, apex), else through (apex, q).
+      // enter = (q, p) with p on the right: an apex on the left is left behind through (p, apex),
+      // else through (apex, q).
       leave = apex > 0 ? next(enter) : prev(enter);
     }
   }
@@ -187,14 +201,17 @@ SurfacePoint on_edge(int h, double weight_from, double weight_to) {
 
 class Builder {
  public:
-  Builder(const Embedded& a, const Embedded& b, const Walks& wa, const Walks& wb) : a_(a), b_(b), wa_(wa), wb_(wb) {}
+  Builder(const Embedded& a, const Embedded& b, const Walks& wa, const Walks& wb)
+      : a_(a), b_(b), wa_(wa), wb_(wb) {}
 
   Result<SurfaceMap> run() {
     add_vertex_nodes();
     add_crossings();
-    if (!consistent_) return fail(ErrorCode::kInternal, "overlay: the walks through the two meshes disagree");
+    if (!consistent_)
+      return fail(ErrorCode::kInternal, "overlay: the walks through the two meshes disagree");
     add_segments();
-    if (!consistent_) return fail(ErrorCode::kInternal, "overlay: the walks through the two meshes disagree");
+    if (!consistent_)
+      return fail(ErrorCode::kInternal, "overlay: the walks through the two meshes disagree");
     make_rotations();
     collect_polygons();
     return std::move(map_);
@@ -212,7 +229,8 @@ class Builder {
       int face = wa_.face[at(v)];
       map_.point_of_source_vertex.push_back(map_.point_count());
       map_.source.push_back(point_at_vertex(a_.mesh, v));
-      map_.target.push_back(wa_.same[at(v)] >= 0 ? point_at_vertex(b_.mesh, wa_.same[at(v)]) : in_b.surface_point(a_.x(v), face));
+      map_.target.push_back(wa_.same[at(v)] >= 0 ? point_at_vertex(b_.mesh, wa_.same[at(v)])
+                                                 : in_b.surface_point(a_.x(v), face));
     }
     for (int v = 0; v < b_.mesh.vertex_count(); ++v) {
       if (wb_.same[at(v)] >= 0) {
@@ -231,7 +249,9 @@ class Builder {
   }
 
   /// det [p q x] by differences: a small determinant keeps its digits.
-  static double orientation(const Vector3d& p, const Vector3d& q, const Vector3d& x) { return p.dot((q - p).cross(x - p)); }
+  static double orientation(const Vector3d& p, const Vector3d& q, const Vector3d& x) {
+    return p.dot((q - p).cross(x - p));
+  }
 
   void add_crossings() {
     for (int h = 0; h < a_.mesh.halfedge_count(); ++h)
@@ -239,8 +259,10 @@ class Builder {
         crossing_.emplace(key(h, b_.edge(g)), map_.point_count());
         const Vector3d u = a_.x(a_.mesh.from(h)), v = a_.x(a_.mesh.to(h));
         const Vector3d p = b_.x(b_.mesh.from(g)), q = b_.x(b_.mesh.to(g));
-        map_.source.push_back(on_edge(h, std::abs(orientation(p, q, v)), std::abs(orientation(p, q, u))));
-        map_.target.push_back(on_edge(g, std::abs(orientation(u, v, q)), std::abs(orientation(u, v, p))));
+        map_.source.push_back(
+            on_edge(h, std::abs(orientation(p, q, v)), std::abs(orientation(p, q, u))));
+        map_.target.push_back(
+            on_edge(g, std::abs(orientation(u, v, q)), std::abs(orientation(u, v, p))));
       }
     size_t crossings = 0;
     for (const auto& crossed : wb_.crossed) crossings += crossed.size();
@@ -263,7 +285,8 @@ class Builder {
       const int t = a_.mesh.twin[at(h)];
       if (h > t) continue;
       const int g = wa_.coincident[at(h)];
-      const int from = map_.point_of_source_vertex[at(a_.mesh.from(h))], to = map_.point_of_source_vertex[at(a_.mesh.to(h))];
+      const int from = map_.point_of_source_vertex[at(a_.mesh.from(h))],
+                to = map_.point_of_source_vertex[at(a_.mesh.to(h))];
       if (g >= 0) {
         const int d = add_pair(from, to, h / 3, g / 3, t / 3, b_.mesh.twin[at(g)] / 3);
         first_a_[at(h)] = first_b_[at(g)] = d;
@@ -307,12 +330,13 @@ class Builder {
       if (i + 2 == nodes.size()) first_b_[at(t)] = d + 1;
       // g leaves a's face through half-edge c, that is to the right of c: to the left of c's twin.
       if (i > 0) crossing_darts_[at(nodes[i])][forward_slot(crossed_from[i])] = d;
-      if (i + 2 < nodes.size()) crossing_darts_[at(nodes[i + 1])][4 - forward_slot(crossed_from[i + 1])] = d + 1;
+      if (i + 2 < nodes.size())
+        crossing_darts_[at(nodes[i + 1])][4 - forward_slot(crossed_from[i + 1])] = d + 1;
     }
   }
 
-  /// Rotation slots at a crossing are: 0 along a's edge (lower half-edge), 1 to its left, 2 back, 3 to its right. The slot
-  /// of b's edge going on after it left a's face through half-edge c.
+  /// Rotation slots at a crossing are: 0 along a's edge (lower half-edge), 1 to its left, 2 back, 3
+  /// to its right. The slot of b's edge going on after it left a's face through half-edge c.
   [[nodiscard]] size_t forward_slot(int c) const { return c < a_.mesh.twin[at(c)] ? 3 : 1; }
 
   void make_rotations() {
@@ -345,7 +369,9 @@ class Builder {
     };
     // Start where a sector begins, so that the run of each sector is in one piece.
     size_t start = 0;
-    while (start < around.size() && sector(start) >= 0 && sector(start) == sector(start + around.size() - 1)) ++start;
+    while (start < around.size() && sector(start) >= 0 &&
+           sector(start) == sector(start + around.size() - 1))
+      ++start;
     for_each_outgoing(b_.mesh, wa_.same[at(v)], [&](int g) {
       darts.push_back(first_b_[at(g)]);
       for (size_t i = start; i < start + around.size(); ++i)
@@ -403,7 +429,10 @@ Result<SurfaceMap> overlay_on_sphere(const TriangleMesh& source,
     return Builder(a, b, wa, wb).run();
   } catch (const Special& s) {
     if (special != nullptr) *special = {on_source, s.vertex};
-    return fail(ErrorCode::kNumerical, fmt::format("overlay: {} vertex {} lies on an edge of the other mesh", on_source ? "source" : "target", s.vertex));
+    return fail(ErrorCode::kNumerical,
+                fmt::format("overlay: {} vertex {} lies on an edge of the other mesh",
+                            on_source ? "source" : "target",
+                            s.vertex));
   }
 }
 

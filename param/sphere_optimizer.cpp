@@ -1,8 +1,10 @@
-// Projected Newton steps for symmetric Dirichlet energies of triangulations that move on the sphere and are judged after a lift.
+// Projected Newton steps for symmetric Dirichlet energies of triangulations that move on the sphere
+// and are judged after a lift.
 //
-// Notation: a vertex x moves by x + B t with B (3 x 2) an orthonormal basis of its tangent plane; its lifted point moves by
-// L B t with L the lift's derivative. In the plane of a lifted face (axes P, 2 x 3) the Jacobian from the rest face is
-// J = P [y1 - y0, y2 - y0] D, D the inverse rest edges.
+// Notation: a vertex x moves by x + B t with B (3 x 2) an orthonormal basis of its tangent plane;
+// its lifted point moves by L B t with L the lift's derivative. In the plane of a lifted face (axes
+// P, 2 x 3) the Jacobian from the rest face is J = P [y1 - y0, y2 - y0] D, D the inverse rest
+// edges.
 #include "param/sphere_optimizer.hpp"
 
 #include <tbb/parallel_for.h>
@@ -22,7 +24,9 @@ using Matrix32 = Eigen::Matrix<double, 3, 2>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-size_t at(int i) { return static_cast<size_t>(i); }
+size_t at(int i) {
+  return static_cast<size_t>(i);
+}
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -38,18 +42,22 @@ double orientation(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   return a.dot((b - a).cross(c - a));
 }
 
-Eigen::Vector4d vec(const Eigen::Matrix2d& m) { return {m(0, 0), m(1, 0), m(0, 1), m(1, 1)}; }
+Eigen::Vector4d vec(const Eigen::Matrix2d& m) {
+  return {m(0, 0), m(1, 0), m(0, 1), m(1, 1)};
+}
 
-/// Value, gradient and positive semidefinite Hessian of |J|^2 + |J^-1|^2 as functions of the entries of J (column by column).
+/// Value, gradient and positive semidefinite Hessian of |J|^2 + |J^-1|^2 as functions of the
+/// entries of J (column by column).
 struct IsotropicHessian {
   double energy;
   Eigen::Vector4d g;
   Eigen::Matrix4d H;
 };
 
-/// Smith, de Goes & Kim 2019, "Analytic eigensystems for isotropic distortion energies": with J = U diag(s) V^T the Hessian has
-/// the eigenmatrices u_i v_i^T, (u_1 v_2^T + u_2 v_1^T) / sqrt(2) and (u_2 v_1^T - u_1 v_2^T) / sqrt(2); only the last one (a
-/// rotation) can have a negative eigenvalue, which is replaced by zero.
+/// Smith, de Goes & Kim 2019, "Analytic eigensystems for isotropic distortion energies": with J = U
+/// diag(s) V^T the Hessian has the eigenmatrices u_i v_i^T, (u_1 v_2^T + u_2 v_1^T) / sqrt(2) and
+/// (u_2 v_1^T - u_1 v_2^T) / sqrt(2); only the last one (a rotation) can have a negative
+/// eigenvalue, which is replaced by zero.
 IsotropicHessian isotropic_hessian(const Eigen::Matrix2d& J) {
   const Eigen::JacobiSVD<Eigen::Matrix2d> svd(J, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::Matrix2d &U = svd.matrixU(), &V = svd.matrixV();
@@ -57,8 +65,10 @@ IsotropicHessian isotropic_hessian(const Eigen::Matrix2d& J) {
   const auto square = [](double x) { return x * x; };
   const double i1 = square(1 / s1), i2 = square(1 / s2);
   const double cube = s1 * s2 * s1 * s2 * s1 * s2;
-  const Eigen::Vector4d d1 = vec(U.col(0) * V.col(0).transpose()), d2 = vec(U.col(1) * V.col(1).transpose());
-  const Eigen::Vector4d a = vec(U.col(0) * V.col(1).transpose()), b = vec(U.col(1) * V.col(0).transpose());
+  const Eigen::Vector4d d1 = vec(U.col(0) * V.col(0).transpose()),
+                        d2 = vec(U.col(1) * V.col(1).transpose());
+  const Eigen::Vector4d a = vec(U.col(0) * V.col(1).transpose()),
+                        b = vec(U.col(1) * V.col(0).transpose());
   const Eigen::Vector4d flip = (a + b) / std::sqrt(2.0), twist = (b - a) / std::sqrt(2.0);
   const double flip_value = 2 + 2 * (s1 * s1 + s1 * s2 + s2 * s2) / cube;
   const double twist_value = std::max(0.0, 2 - 2 * (s1 * s1 - s1 * s2 + s2 * s2) / cube);
@@ -78,7 +88,11 @@ struct FaceSystem {
 
 class Optimizer {
  public:
-  Optimizer(const SphereProblem& problem, const Lift& lift, const SphereOptimizerOptions& options, MatrixX3d& X, std::vector<int>& hint)
+  Optimizer(const SphereProblem& problem,
+            const Lift& lift,
+            const SphereOptimizerOptions& options,
+            MatrixX3d& X,
+            std::vector<int>& hint)
       : problem_(problem), lift_(lift), options_(options), X_(X), hint_(hint) {
     Y_.resize(X.rows(), 3);
     total_area_ = problem.rest_area.sum();
@@ -106,9 +120,12 @@ class Optimizer {
   }
 
  private:
-  Vector3d corner(const MatrixX3d& M, int f, int k) const { return M.row(problem_.F(f, k)).transpose(); }
+  Vector3d corner(const MatrixX3d& M, int f, int k) const {
+    return M.row(problem_.F(f, k)).transpose();
+  }
 
-  /// Mean energy per area; infinite if a face is turned over on the sphere. Updates hints and lifted points.
+  /// Mean energy per area; infinite if a face is turned over on the sphere. Updates hints and
+  /// lifted points.
   double evaluate(const MatrixX3d& X, std::vector<int>& hint, MatrixX3d& Y) const {
     const int faces = static_cast<int>(problem_.F.rows());
     for (int f = 0; f < faces; ++f)
@@ -118,9 +135,11 @@ class Optimizer {
     });
     Eigen::VectorXd energy(faces);
     tbb::parallel_for(0, faces, [&](int f) {
-      double e = symmetric_dirichlet(problem_.rest_inverse[at(f)], corner(Y, f, 0), corner(Y, f, 1), corner(Y, f, 2));
+      double e = symmetric_dirichlet(
+          problem_.rest_inverse[at(f)], corner(Y, f, 0), corner(Y, f, 1), corner(Y, f, 2));
       if (options_.logarithmic) e = std::log(e);
-      e += options_.barrier * problem_.reference_orientation[f] / orientation(corner(X, f, 0), corner(X, f, 1), corner(X, f, 2));
+      e += options_.barrier * problem_.reference_orientation[f] /
+           orientation(corner(X, f, 0), corner(X, f, 1), corner(X, f, 2));
       energy[f] = problem_.rest_area[f] * e;
     });
     return energy.sum() / total_area_;
@@ -140,13 +159,15 @@ class Optimizer {
     for (int k = 0; k < 3; ++k) {
       const Eigen::Matrix2d M = P * tangent_[at(problem_.F(f, k))];
       // How the edge matrix E follows corner k.
-      const Eigen::RowVector2d s =
-          k == 0 ? Eigen::RowVector2d(-1, -1) : k == 1 ? Eigen::RowVector2d(1, 0) : Eigen::RowVector2d(0, 1);
+      const Eigen::RowVector2d s = k == 0   ? Eigen::RowVector2d(-1, -1)
+                                   : k == 1 ? Eigen::RowVector2d(1, 0)
+                                            : Eigen::RowVector2d(0, 1);
       const Eigen::RowVector2d sd = s * D;
       for (int j = 0; j < 2; ++j) G.col(2 * k + j) = vec(M.col(j) * sd);
     }
     const IsotropicHessian e = isotropic_hessian(J);
-    const double weight = problem_.rest_area[f] / total_area_ / (options_.logarithmic ? e.energy : 1.0);
+    const double weight =
+        problem_.rest_area[f] / total_area_ / (options_.logarithmic ? e.energy : 1.0);
     FaceSystem s{weight * G.transpose() * e.H * G, weight * G.transpose() * e.g};
     add_barrier(f, s);
     return s;
@@ -156,16 +177,19 @@ class Optimizer {
   void add_barrier(int f, FaceSystem& s) const {
     const Vector3d x[3] = {corner(X_, f, 0), corner(X_, f, 1), corner(X_, f, 2)};
     const double det = orientation(x[0], x[1], x[2]);
-    const double b = problem_.rest_area[f] / total_area_ * options_.barrier * problem_.reference_orientation[f] / det;
+    const double b = problem_.rest_area[f] / total_area_ * options_.barrier *
+                     problem_.reference_orientation[f] / det;
     Vector6 ddet;
     for (int k = 0; k < 3; ++k)
-      ddet.segment<2>(2 * k) = basis_[at(problem_.F(f, k))].transpose() * x[(k + 1) % 3].cross(x[(k + 2) % 3]);
+      ddet.segment<2>(2 * k) =
+          basis_[at(problem_.F(f, k))].transpose() * x[(k + 1) % 3].cross(x[(k + 2) % 3]);
     const Vector6 dr = -0.5 * std::sqrt(b) / det * ddet;
     s.H += 2 * dr * dr.transpose();
     s.g += 2 * std::sqrt(b) * dr;
   }
 
-  /// Unknowns are numbered over the free vertices; the lower triangle's sparsity is fixed by the faces.
+  /// Unknowns are numbered over the free vertices; the lower triangle's sparsity is fixed by the
+  /// faces.
   void build_pattern() {
     const int vertices = static_cast<int>(X_.rows());
     active_.assign(at(vertices), false);
@@ -208,7 +232,8 @@ class Optimizer {
       basis_[at(v)] = tangent_basis(x);
       tangent_[at(v)] = lift_.derivative(x, hint_[at(v)]) * basis_[at(v)];
     });
-    tbb::parallel_for(0, static_cast<int>(problem_.F.rows()), [&](int f) { systems_[at(f)] = face_system(f); });
+    tbb::parallel_for(
+        0, static_cast<int>(problem_.F.rows()), [&](int f) { systems_[at(f)] = face_system(f); });
     std::fill(H_.valuePtr(), H_.valuePtr() + H_.nonZeros(), 0.0);
     gradient_.setZero();
     for (int f = 0; f < problem_.F.rows(); ++f) {
@@ -229,7 +254,8 @@ class Optimizer {
   }
 
   bool solve() {
-    // Rotations of the sphere leave some energies unchanged: a relative shift keeps the factorisation definite.
+    // Rotations of the sphere leave some energies unchanged: a relative shift keeps the
+    // factorisation definite.
     double trace = 0;
     for (int i = 0; i < H_.cols(); ++i) trace += H_.coeff(i, i);
     const double shift = 1e-9 * trace / std::max<double>(1, static_cast<double>(H_.cols()));
@@ -240,8 +266,8 @@ class Optimizer {
     return step_.allFinite();
   }
 
-  /// Takes the longest of the steps 1, 1/2, 1/4, ... that turns no face over and lowers the energy. Returns the new energy,
-  /// or the old one if no step does.
+  /// Takes the longest of the steps 1, 1/2, 1/4, ... that turns no face over and lowers the energy.
+  /// Returns the new energy, or the old one if no step does.
   double line_search(double energy) {
     MatrixX3d X(X_.rows(), 3), Y = Y_;
     constexpr int kHalvings = 20;
@@ -301,14 +327,18 @@ SphereProblem make_sphere_problem(MatrixX3i F, const MatrixX3d& V, const std::ve
     problem.rest_inverse[at(f)] = E.inverse();
     problem.rest_area[f] = 0.5 * base * height;
   }
-  problem.reference_orientation = 8 * std::numbers::pi / problem.rest_area.sum() * problem.rest_area;
+  problem.reference_orientation =
+      8 * std::numbers::pi / problem.rest_area.sum() * problem.rest_area;
   problem.fixed.assign(at(static_cast<int>(V.rows())), false);
   for (int v : pinned) problem.fixed[at(v)] = true;
   problem.F = std::move(F);
   return problem;
 }
 
-double symmetric_dirichlet(const Eigen::Matrix2d& D, const Vector3d& y0, const Vector3d& y1, const Vector3d& y2) {
+double symmetric_dirichlet(const Eigen::Matrix2d& D,
+                           const Vector3d& y0,
+                           const Vector3d& y1,
+                           const Vector3d& y2) {
   Matrix32 E;
   E << y1 - y0, y2 - y0;
   const Eigen::Matrix2d G = D.transpose() * (E.transpose() * E) * D;
@@ -327,8 +357,10 @@ SphereOptimizerReport optimize_on_sphere(const SphereProblem& problem,
 double smallest_orientation(const MatrixX3i& F, const MatrixX3d& X) {
   double smallest = kInfinity;
   for (int f = 0; f < F.rows(); ++f)
-    smallest = std::min(smallest,
-                        orientation(X.row(F(f, 0)).transpose(), X.row(F(f, 1)).transpose(), X.row(F(f, 2)).transpose()));
+    smallest = std::min(
+        smallest,
+        orientation(
+            X.row(F(f, 0)).transpose(), X.row(F(f, 1)).transpose(), X.row(F(f, 2)).transpose()));
   return smallest;
 }
 

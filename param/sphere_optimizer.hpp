@@ -6,29 +6,32 @@
 
 namespace crosspatch {
 
-/// A triangulation of a surface, free to move on the sphere, whose faces carry the shape they should have after the lift.
+/// A triangulation of a surface, free to move on the sphere, whose faces carry the shape they
+/// should have after the lift.
 struct SphereProblem {
-  MatrixX3i F;                                ///< #F x 3 over the rows of X
-  std::vector<Eigen::Matrix2d> rest_inverse;  ///< per face: inverse of the 2 x 2 matrix of its rest edges
-  Eigen::VectorXd rest_area;                  ///< per face
-  /// Per face: the value of det(x0, x1, x2) it is held against by the barrier. make_sphere_problem sets that of a face with its
-  /// share of the sphere's area.
+  MatrixX3i F;  ///< #F x 3 over the rows of X
+  std::vector<Eigen::Matrix2d>
+      rest_inverse;           ///< per face: inverse of the 2 x 2 matrix of its rest edges
+  Eigen::VectorXd rest_area;  ///< per face
+  /// Per face: the value of det(x0, x1, x2) it is held against by the barrier. make_sphere_problem
+  /// sets that of a face with its share of the sphere's area.
   Eigen::VectorXd reference_orientation;
-  std::vector<bool> fixed;                    ///< per vertex
+  std::vector<bool> fixed;  ///< per vertex
 };
 
-/// The faces `F` with the shapes they have in `V`; slivers are thickened to a height of a fiftieth of their longest edge,
-/// because the energy of a flatter triangle says nothing about the surface. `pinned` vertices do not move.
+/// The faces `F` with the shapes they have in `V`; slivers are thickened to a height of a fiftieth
+/// of their longest edge, because the energy of a flatter triangle says nothing about the surface.
+/// `pinned` vertices do not move.
 SphereProblem make_sphere_problem(MatrixX3i F, const MatrixX3d& V, const std::vector<int>& pinned);
 
 struct SphereOptimizerOptions {
   int max_iterations = 30;
   double relative_decrease = 1e-4;  ///< stop when an iteration gains less
-  /// Minimise the area-weighted mean of the logarithm of the energy: reaches a usable state from starts whose plain energy
-  /// is ruled by a few faces.
+  /// Minimise the area-weighted mean of the logarithm of the energy: reaches a usable state from
+  /// starts whose plain energy is ruled by a few faces.
   bool logarithmic = false;
-  /// Weight of reference_orientation over the present one: keeps faces from being flattened on the sphere where the lift
-  /// hides it.
+  /// Weight of reference_orientation over the present one: keeps faces from being flattened on the
+  /// sphere where the lift hides it.
   double barrier = 1e-3;
 };
 
@@ -38,10 +41,11 @@ struct SphereOptimizerReport {
   double energy_after = 0;
 };
 
-/// Moves the rows of `X` (unit vectors) downhill in the symmetric Dirichlet energy |J|^2 + |J^-1|^2 of the maps from the rest
-/// faces to the lifted ones, by projected Newton steps with a global backtracking line search; no face ever turns over on the
-/// sphere. `hint` (#V) holds a face of the lift for each vertex, kept up to date.
-/// Precondition: every face of F is positively oriented in X.
+/// Moves the rows of `X` (unit vectors) downhill in the symmetric Dirichlet energy |J|^2 + |J^-1|^2
+/// of the maps from the rest faces to the lifted ones, by projected Newton steps with a global
+/// backtracking line search; no face ever turns over on the sphere. `hint` (#V) holds a face of the
+/// lift for each vertex, kept up to date. Precondition: every face of F is positively oriented in
+/// X.
 SphereOptimizerReport optimize_on_sphere(const SphereProblem& problem,
                                          const Lift& lift,
                                          const SphereOptimizerOptions& options,
@@ -49,7 +53,10 @@ SphereOptimizerReport optimize_on_sphere(const SphereProblem& problem,
                                          std::vector<int>& hint);
 
 /// Energy |J|^2 + |J^-1|^2 of one face with lifted corners y; infinite where it has no area.
-double symmetric_dirichlet(const Eigen::Matrix2d& rest_inverse, const Vector3d& y0, const Vector3d& y1, const Vector3d& y2);
+double symmetric_dirichlet(const Eigen::Matrix2d& rest_inverse,
+                           const Vector3d& y0,
+                           const Vector3d& y1,
+                           const Vector3d& y2);
 
 /// Smallest orientation det(x0, x1, x2) of the faces, in the double arithmetic of the optimiser.
 double smallest_orientation(const MatrixX3i& F, const MatrixX3d& X);

@@ -11,7 +11,9 @@ namespace {
 
 using std::size_t;
 
-size_t at(int i) { return static_cast<size_t>(i); }
+size_t at(int i) {
+  return static_cast<size_t>(i);
+}
 
 using Polygon = std::vector<Vector2d>;
 
@@ -42,16 +44,21 @@ Vector2d centroid(const Polygon& polygon) {
 /// Places single vertices inside the rings of their neighbours.
 class Placer {
  public:
-  Placer(const Refinement& refinement, const MatrixX3d& V, const Lift& lift, MatrixX3d& X, std::vector<int>& hint)
+  Placer(const Refinement& refinement,
+         const MatrixX3d& V,
+         const Lift& lift,
+         MatrixX3d& X,
+         std::vector<int>& hint)
       : refinement_(refinement), V_(V), lift_(lift), X_(X), hint_(hint) {}
 
-  /// Puts `v` where its faces have the least energy. `near` is the vertex it was just split from, or v itself to move it from
-  /// a valid place. False if no place is left.
+  /// Puts `v` where its faces have the least energy. `near` is the vertex it was just split from,
+  /// or v itself to move it from a valid place. False if no place is left.
   bool place(int v, int near) {
     collect(v);
     const Vector3d center = X_.row(near).transpose();
     const Vector3d e1 = center.unitOrthogonal(), e2 = center.cross(e1);
-    // Gnomonic plane: the ring's great circles are lines, and the kernel holds or touches the origin.
+    // Gnomonic plane: the ring's great circles are lines, and the kernel holds or touches the
+    // origin.
     constexpr double kReach = 4;
     Polygon kernel{{-kReach, -kReach}, {kReach, -kReach}, {kReach, kReach}, {-kReach, kReach}};
     for (const auto& [a, b] : ring_) {
@@ -64,7 +71,9 @@ class Placer {
       if (kernel.size() < 3) return false;
     }
     const Vector2d middle = centroid(kernel);
-    const auto on_sphere = [&](const Vector2d& p) { return Vector3d((center + p[0] * e1 + p[1] * e2).normalized()); };
+    const auto on_sphere = [&](const Vector2d& p) {
+      return Vector3d((center + p[0] * e1 + p[1] * e2).normalized());
+    };
     double best = std::numeric_limits<double>::infinity();
     const auto consider = [&](const Vector3d& x) {
       int face = hint_[at(near)];
@@ -102,7 +111,8 @@ class Placer {
     const Vector3d y = lift_.point(x, face);
     double sum = 0;
     for (size_t i = 0; i < ring_.size(); ++i) {
-      const Vector3d p = X_.row(ring_[i].first).transpose(), q = X_.row(ring_[i].second).transpose();
+      const Vector3d p = X_.row(ring_[i].first).transpose(),
+                     q = X_.row(ring_[i].second).transpose();
       if (!(x.dot((p - x).cross(q - x)) > 0)) return std::numeric_limits<double>::infinity();
       int fp = hint_[at(ring_[i].first)], fq = hint_[at(ring_[i].second)];
       sum += area_[static_cast<int>(i)] *
@@ -122,11 +132,16 @@ class Placer {
 };
 
 /// Vertices of faces whose energy exceeds `bound`.
-std::vector<int> vertices_above(const SphereProblem& problem, const Lift& lift, double bound, const MatrixX3d& X, std::vector<int>& hint) {
+std::vector<int> vertices_above(const SphereProblem& problem,
+                                const Lift& lift,
+                                double bound,
+                                const MatrixX3d& X,
+                                std::vector<int>& hint) {
   std::vector<int> vertices;
   for (int f = 0; f < problem.F.rows(); ++f) {
     Vector3d y[3];
-    for (int k = 0; k < 3; ++k) y[k] = lift.point(X.row(problem.F(f, k)).transpose(), hint[at(problem.F(f, k))]);
+    for (int k = 0; k < 3; ++k)
+      y[k] = lift.point(X.row(problem.F(f, k)).transpose(), hint[at(problem.F(f, k))]);
     if (symmetric_dirichlet(problem.rest_inverse[at(f)], y[0], y[1], y[2]) > bound)
       for (int k = 0; k < 3; ++k) vertices.push_back(problem.F(f, k));
   }
@@ -142,7 +157,9 @@ Status place_tetrahedron(const Refinement& refinement, MatrixX3d& X) {
   for (int v = 0; v < X.rows(); ++v)
     if (!refinement.faces(v).empty()) corner.push_back(v);
   if (corner.size() != 4 || F.rows() != 4)
-    return fail(ErrorCode::kNumerical, fmt::format("spherical embedding: the coarsest level has {} vertices, not 4", corner.size()));
+    return fail(ErrorCode::kNumerical,
+                fmt::format("spherical embedding: the coarsest level has {} vertices, not 4",
+                            corner.size()));
   X.row(corner[0]) << 1, 1, 1;
   X.row(corner[1]) << 1, -1, -1;
   X.row(corner[2]) << -1, 1, -1;
@@ -150,13 +167,19 @@ Status place_tetrahedron(const Refinement& refinement, MatrixX3d& X) {
   X /= std::sqrt(3.0);
   if (smallest_orientation(F, X) < 0) X.row(corner[0]).swap(X.row(corner[1]));
   if (!(smallest_orientation(F, X) > 0))
-    return fail(ErrorCode::kNumerical, "spherical embedding: the coarsest level is not a tetrahedron");
+    return fail(ErrorCode::kNumerical,
+                "spherical embedding: the coarsest level is not a tetrahedron");
   return {};
 }
 
 }  // namespace
 
-void relax_worst(const Refinement& level, const MatrixX3d& V, const Lift& lift, const std::vector<int>& pinned, MatrixX3d& X, std::vector<int>& hint) {
+void relax_worst(const Refinement& level,
+                 const MatrixX3d& V,
+                 const Lift& lift,
+                 const std::vector<int>& pinned,
+                 MatrixX3d& X,
+                 std::vector<int>& hint) {
   constexpr int kSweeps = 10;
   constexpr double kBound = 40;  // a stretch beyond six in one direction
   const SphereProblem problem = make_sphere_problem(level.compact_faces(), V, pinned);
@@ -166,19 +189,30 @@ void relax_worst(const Refinement& level, const MatrixX3d& V, const Lift& lift, 
       if (!problem.fixed[at(v)]) placer.place(v, v);
 }
 
-Status refine_on_sphere(Refinement& refinement, const MatrixX3d& V, const Lift& lift, const RefineOptions& options, MatrixX3d& X, std::vector<int>& hint) {
+Status refine_on_sphere(Refinement& refinement,
+                        const MatrixX3d& V,
+                        const Lift& lift,
+                        const RefineOptions& options,
+                        MatrixX3d& X,
+                        std::vector<int>& hint) {
   Placer placer(refinement, V, lift, X, hint);
   int optimised_at = refinement.vertex_count();
   while (!refinement.done() && refinement.vertex_count() < options.until_vertices) {
     const int v = refinement.split();
     if (!placer.place(v, refinement.last_kept()))
       return fail(ErrorCode::kNumerical,
-                  fmt::format("spherical embedding: no place for vertex {} at level {}", v, refinement.vertex_count()));
+                  fmt::format("spherical embedding: no place for vertex {} at level {}",
+                              v,
+                              refinement.vertex_count()));
     const int n = refinement.vertex_count();
     const bool last = refinement.done() || n >= options.until_vertices;
     if (!last && n < options.growth * optimised_at) continue;
     optimised_at = n;
-    optimize_on_sphere(make_sphere_problem(refinement.compact_faces(), V, options.pinned), lift, options.optimizer, X, hint);
+    optimize_on_sphere(make_sphere_problem(refinement.compact_faces(), V, options.pinned),
+                       lift,
+                       options.optimizer,
+                       X,
+                       hint);
   }
   return {};
 }
@@ -188,8 +222,13 @@ Result<MatrixX3d> embed_in_sphere(const TriangleMesh& mesh, const ProgressiveMes
   MatrixX3d X = MatrixX3d::Zero(mesh.vertex_count(), 3);
   if (Status s = place_tetrahedron(refinement, X); !s) return tl::unexpected(s.error());
   std::vector<int> hint(at(mesh.vertex_count()), 0);
-  const RefineOptions options{.until_vertices = mesh.vertex_count(), .growth = 1.5, .optimizer = {.max_iterations = 100, .relative_decrease = 1e-3, .logarithmic = false, .barrier = 0.1}};
-  if (Status s = refine_on_sphere(refinement, mesh.V, SphereLift(), options, X, hint); !s) return tl::unexpected(s.error());
+  const RefineOptions options{
+      .until_vertices = mesh.vertex_count(),
+      .growth = 1.5,
+      .optimizer = {
+          .max_iterations = 100, .relative_decrease = 1e-3, .logarithmic = false, .barrier = 0.1}};
+  if (Status s = refine_on_sphere(refinement, mesh.V, SphereLift(), options, X, hint); !s)
+    return tl::unexpected(s.error());
   return X;
 }
 

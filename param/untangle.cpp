@@ -8,14 +8,18 @@ namespace {
 
 using std::size_t;
 
-size_t at(int i) { return static_cast<size_t>(i); }
+size_t at(int i) {
+  return static_cast<size_t>(i);
+}
 
 class Untangler {
  public:
-  Untangler(const MatrixX3d& X, const std::vector<bool>& fixed, Refinement& level) : X_(X), fixed_(fixed), level_(level) {}
+  Untangler(const MatrixX3d& X, const std::vector<bool>& fixed, Refinement& level)
+      : X_(X), fixed_(fixed), level_(level) {}
 
   bool run() {
-    for (std::vector<int> waiting = turned_vertices(); !waiting.empty(); waiting = turned_vertices()) {
+    for (std::vector<int> waiting = turned_vertices(); !waiting.empty();
+         waiting = turned_vertices()) {
       bool progress = false;
       for (int v : waiting) progress = collapse_best(v, 1) || progress;
       if (progress) continue;
@@ -53,8 +57,8 @@ class Untangler {
     return vertices;
   }
 
-  /// Collapses v where that removes at least `gain` turned faces; of these where fewest stay turned and, then, where the
-  /// smallest orientation is largest.
+  /// Collapses v where that removes at least `gain` turned faces; of these where fewest stay turned
+  /// and, then, where the smallest orientation is largest.
   bool collapse_best(int v, int gain) {
     if (fixed_[at(v)] || level_.faces(v).empty()) return false;
     int before = 0;

@@ -9,9 +9,10 @@ namespace crosspatch {
 /// Number of faces with det(x0, x1, x2) <= 0.
 int turned_faces(const MatrixX3i& F, const MatrixX3d& X);
 
-/// Collapses vertices of faces that are turned over on the sphere until none is: what is left is an embedding, and splitting
-/// the vertices again inside the kernels of their rings (refine_on_sphere) puts them back in order. `X` (#V x 3, unit rows) is not
-/// changed; vertices with `fixed` stay. False if some faces stay turned.
+/// Collapses vertices of faces that are turned over on the sphere until none is: what is left is an
+/// embedding, and splitting the vertices again inside the kernels of their rings (refine_on_sphere)
+/// puts them back in order. `X` (#V x 3, unit rows) is not changed; vertices with `fixed` stay.
+/// False if some faces stay turned.
 bool collapse_turned_faces(const MatrixX3d& X, const std::vector<bool>& fixed, Refinement& level);
 
 }  // namespace crosspatch

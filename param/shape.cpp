@@ -1,0 +1,28 @@
+#include "param/shape.hpp"
+
+#include <fmt/format.h>
+
+#include "param/sphere_refinement.hpp"
+
+namespace crosspatch {
+
+Result<Shape> make_shape(TriangleMesh mesh,
+                         const std::vector<int>& landmarks,
+                         const ShapeOptions& options) {
+  if (const int chi = euler_characteristic(mesh); chi != 2)
+    return fail(
+        ErrorCode::kNoCorrespondence,
+        fmt::format("surface: Euler characteristic {} (genus {}), only spheres (2) can be mapped",
+                    chi,
+                    genus(mesh)));
+  auto progressive = make_progressive_mesh(
+      mesh, {.shape_vertices = options.coarse_vertices, .protected_vertices = landmarks});
+  if (!progressive) return tl::unexpected(progressive.error());
+  auto coarse = mesh_level(mesh, *progressive, options.coarse_vertices);
+  if (!coarse) return tl::unexpected(coarse.error());
+  auto X = embed_in_sphere(mesh, *progressive);
+  if (!X) return tl::unexpected(X.error());
+  return Shape{std::move(mesh), std::move(*progressive), std::move(*coarse), std::move(*X)};
+}
+
+}  // namespace crosspatch

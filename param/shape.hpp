@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "core/progressive_mesh.hpp"
+
+namespace crosspatch {
+
+/// A closed surface of genus 0 made ready to be mapped: what is computed once per surface, whatever
+/// it is mapped to.
+struct Shape {
+  TriangleMesh mesh;            ///< area 1
+  ProgressiveMesh progressive;  ///< its levels
+  MeshLevel coarse;  ///< the level on which candidate maps are judged; holds every landmark
+  MatrixX3d X;       ///< #V x 3, its embedding in the unit sphere
+};
+
+struct ShapeOptions {
+  int coarse_vertices =
+      1600;  ///< ours: the judge is as right at 1600 as at 5000 vertices, and ten times as fast
+};
+
+/// `mesh` must be closed, connected, of genus 0 and of area 1; `landmarks` are vertices that the
+/// coarse level must keep. kNoCorrespondence for another topology; kNumerical from the stages.
+Result<Shape> make_shape(TriangleMesh mesh,
+                         const std::vector<int>& landmarks,
+                         const ShapeOptions& options = {});
+
+}  // namespace crosspatch
