@@ -66,7 +66,7 @@ class MtlParser {
   Status parse(std::string_view text) {
     LineReader lines(text);
     while (auto line = lines.next()) {
-      std::string_view rest = trimmed(line->substr(0, line->find('#')));
+      std::string_view rest = trimmed(without_comment(*line));
       const std::string_view keyword = take_word(rest);
       if (keyword == "newmtl") {
         begin_material(trimmed(rest));

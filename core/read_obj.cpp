@@ -44,7 +44,7 @@ class ObjParser {
 
  private:
   Status read_statement(std::string_view line) {
-    line = line.substr(0, line.find('#'));
+    line = without_comment(line);
     const std::string_view keyword = take_word(line);
     if (keyword == "v") return read_vertex(line);
     if (keyword == "vt") return read_numbers(line, 1, 3, "texture coordinate", vt_);
@@ -108,7 +108,6 @@ class ObjParser {
       for (std::size_t i = 0; i < 3; ++i) {
         const std::string_view part = rest.substr(0, rest.find('/'));
         rest.remove_prefix(std::min(part.size() + 1, rest.size()));
-        // An index into a list the file never fills is passed over (see finish).
         if (part.empty() && i > 0) continue;
         const auto index = read_index(part, counts[i], kWhat[i]);
         if (!index) return tl::unexpected(index.error());

@@ -22,7 +22,7 @@ std::uint32_t little_endian(std::string_view bytes) {
 }
 
 /// Corner c is vertex c; three corners a facet.
-Result<PolygonSoup> soup_of_facets(const std::vector<double>& coordinates) {
+PolygonSoup soup_of_facets(const std::vector<double>& coordinates) {
   PolygonSoup soup;
   soup.positions = as_positions(coordinates);
   for (int v = 0; v < soup.positions.rows(); ++v) {
@@ -54,9 +54,9 @@ Result<PolygonSoup> parse_binary(std::string_view bytes, const ReadLimits& limit
                     fmt::format("facet {} (counted from 0): a coordinate is not finite", f));
       coordinates.push_back(value);
     }
-  auto soup = soup_of_facets(coordinates);
+  PolygonSoup soup = soup_of_facets(coordinates);
   const std::size_t left = bytes.size() - kBinaryHeader - kBinaryFacet * facets;
-  if (left > 0) soup->notes.push_back(fmt::format("{} bytes after the last facet", left));
+  if (left > 0) soup.notes.push_back(fmt::format("{} bytes after the last facet", left));
   return soup;
 }
 
@@ -64,10 +64,11 @@ Result<PolygonSoup> parse_ascii(std::string_view text, const ReadLimits& limits)
   LineReader lines(text);
   std::vector<double> coordinates;
   std::size_t loop_begin = 0;
-  bool in_loop = false;
+  bool in_loop = false, ended = false;
   while (const auto line = lines.next()) {
     std::string_view rest = *line;
     const std::string_view keyword = take_word(rest);
+    ended = keyword == "endsolid" || (ended && keyword.empty());
     const auto bad = [&](const std::string& what) {
       return fail(ErrorCode::kBadInput, fmt::format("line {}: {}", lines.number(), what));
     };
@@ -96,7 +97,9 @@ Result<PolygonSoup> parse_ascii(std::string_view text, const ReadLimits& limits)
     }
   }
   if (in_loop) return fail(ErrorCode::kBadInput, "the file ends inside a facet");
-  return soup_of_facets(coordinates);
+  PolygonSoup soup = soup_of_facets(coordinates);
+  if (!ended) soup.notes.emplace_back("the file ends without 'endsolid'");
+  return soup;
 }
 
 }  // namespace

@@ -58,6 +58,13 @@ inline std::string_view trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(kBlank) - begin + 1);
 }
 
+/// `line` up to a `#` that begins it or follows a blank; "1.#QNAN" is a word.
+inline std::string_view without_comment(std::string_view line) {
+  for (std::size_t i = line.find('#'); i != std::string_view::npos; i = line.find('#', i + 1))
+    if (i == 0 || line[i - 1] == ' ' || line[i - 1] == '\t') return line.substr(0, i);
+  return line;
+}
+
 /// Hands out the lines of a text, numbered from 1. Line ends: \n, \r\n or \r.
 class LineReader {
  public:
@@ -78,10 +85,10 @@ class LineReader {
     return line;
   }
 
-  /// The next line that holds a word before any `#`, cut at the `#`.
+  /// The next line that holds a word before any comment, without the comment.
   std::optional<std::string_view> next_meaningful() {
     while (auto line = next()) {
-      const std::string_view kept = trimmed(line->substr(0, line->find('#')));
+      const std::string_view kept = trimmed(without_comment(*line));
       if (!kept.empty()) return kept;
     }
     return std::nullopt;

@@ -65,7 +65,7 @@ TEST(ReadSoup, ObjIndicesCountFromOneOrBackFromTheLastLine) {
   const PolygonSoup soup = read(TempFolder(),
                                 "a.obj",
                                 "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\r\nv 1 1 0 # last\n"
-                                "f 2 \\\n4 3\nf 1 1 2\nf 1 2\n");
+                                "f 2 \\\n4 3\nf 1 1 2\nf 1 2\n#f 1 2 3\n");
   EXPECT_EQ(soup.corner_vertex, (std::vector<int>{0, 1, 2, 1, 3, 2, 0, 0, 1, 0, 1}));
   EXPECT_EQ(soup.polygon_begin, (std::vector<int>{0, 3, 6, 9, 11}));
   EXPECT_EQ(fan_triangle_corners(soup).size(), 9u);  // two corners make no triangle
