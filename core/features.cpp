@@ -48,6 +48,12 @@ Result<ShapeFeatures> compute_features(const TriangleMesh& mesh, const FeatureOp
     features.tips.resize(static_cast<std::size_t>(options.max_tips));
   std::vector<int> vertices;
   for (const Tip& tip : features.tips) vertices.push_back(tip.vertex);
+  while (static_cast<int>(vertices.size()) < std::min(options.least_tips, mesh.vertex_count())) {
+    Eigen::Index farthest = 0;
+    geodesic_distance_to_set(mesh, vertices).maxCoeff(&farthest);
+    vertices.push_back(static_cast<int>(farthest));
+    features.tips.push_back({vertices.back(), 0, features.log_adf[farthest]});
+  }
   features.tip_distances = geodesic_distances(mesh, vertices) / std::sqrt(total_area(mesh));
   return features;
 }

@@ -7,7 +7,8 @@
 
 namespace crosspatch {
 
-/// An extremity: a maximum of the auto diffusion function.
+/// An extremity: a maximum of the auto diffusion function (or, with persistence 0, a farthest
+/// point).
 struct Tip {
   int vertex = -1;
   double persistence = 0;  ///< on log ADF, as a fraction of its range; 1 for the highest maximum
@@ -24,6 +25,9 @@ struct FeatureOptions {
   double tip_persistence = 0.02;
   /// Of more tips the most persistent are kept.
   int max_tips = 24;
+  /// Fewer tips are filled up, with persistence 0, by vertices farthest from those there are: ours,
+  /// because maps through fewer points say little about a surface.
+  int least_tips = 4;
 };
 
 /// What is computed once of each surface, in units of the surface scaled to area 1.

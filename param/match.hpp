@@ -1,0 +1,40 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/candidates.hpp"
+#include "param/judge.hpp"
+
+namespace crosspatch {
+
+struct MatchOptions {
+  FeatureOptions features = {};
+  ProposalOptions proposal = {};
+  JudgeOptions judge = {};
+  MapOptions map = {};
+  ShapeOptions shape = {};
+  /// This many landmarks decide the map alone; fewer are joined with proposed tips.
+  int enough_landmarks = 3;
+  /// Called with the name of each stage when it begins; may be empty.
+  std::function<void(const std::string&)> progress = {};
+};
+
+/// A map with all that led to it.
+struct MatchedMap {
+  std::vector<Candidate> ranking;  ///< by the judge; ranking[0] was mapped
+  double margin = 0;               ///< Judgement::margin; infinite where landmarks left no choice
+  MapResult result;
+};
+
+/// Finds the map of two closed surfaces of genus 0 and area 1: proposes assignments of their tips,
+/// judges them by their bijective maps and optimises the winner. `given` landmarks are exact in the
+/// result; found ones are released in the end. kNoCorrespondence: another topology, or no candidate
+/// has a map. Other errors are those of the stages.
+Result<MatchedMap> match_and_map(const TriangleMesh& source,
+                                 const TriangleMesh& target,
+                                 const std::vector<Landmark>& given,
+                                 const MatchOptions& options = {});
+
+}  // namespace crosspatch
