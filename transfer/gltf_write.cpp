@@ -161,7 +161,7 @@ class Writer {
 
   Result<int> add_texture(const TextureRef& ref) {
     const auto image = add_image(ref.image);
-    if (!image) return image;
+    if (!image) return tl::unexpected(image.error());
     tinygltf::Texture texture;
     texture.source = *image;
     texture.sampler = add_sampler(ref);

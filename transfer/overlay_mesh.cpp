@@ -253,6 +253,7 @@ class Builder {
            OverlayMesh::Triangle pattern) {
     const int n = static_cast<int>(wedges.size());
     std::vector<Vector3d> bary;
+    bary.reserve(wedges.size());
     for (const int w : wedges)
       bary.push_back(
           in_face(target_, mesh_.points[idx(mesh_.wedge_point[idx(w)])], pattern.target_face).bary);
@@ -314,6 +315,7 @@ class Builder {
       side_marks.resize(loop.size(), static_cast<std::uint8_t>(mark | kExact));
     }
     std::vector<int> wedges;
+    wedges.reserve(loop.size());
     for (const int q : loop) {
       // Wedges of unmapped faces carry zeros, so that one a point is enough.
       const auto [entry, fresh] = plain_wedge_.try_emplace(q, -1);
