@@ -75,6 +75,56 @@ CLI::App* add_inspect(CLI::App& app, InspectArguments& arguments) {
   return command;
 }
 
+void add_pair(CLI::App& command, PairArguments& pair) {
+  command.add_option("SOURCE", pair.files.source, "Mesh to map from")->required();
+  command.add_option("TARGET", pair.files.target, "Mesh to map to")->required();
+  command
+      .add_option("--landmarks",
+                  pair.files.landmarks,
+                  "Corresponding vertices 'source_vertex target_vertex' a line, counted from 0; "
+                  "they are met exactly [found by the program]")
+      ->type_name("FILE");
+  add_common(command, pair.common);
+}
+
+CLI::App* add_map(CLI::App& app, MapArguments& arguments) {
+  CLI::App* command =
+      app.add_subcommand("map", "Map one surface onto another, one-to-one, as text files");
+  command
+      ->add_option("-o,--output",
+                   arguments.output,
+                   "For each vertex of SOURCE its point on TARGET: 'face b0 b1 b2'")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--inverse", arguments.inverse, "The same from TARGET to SOURCE")
+      ->type_name("FILE");
+  command
+      ->add_option("--overlay", arguments.overlay, "The exact map: the common subdivision of both")
+      ->type_name("FILE");
+  add_pair(*command, arguments.pair);
+  command->footer(
+      "\nExamples:\n"
+      "  crosspatch map cow.obj camel.off --output map.txt\n"
+      "  crosspatch map cow.obj camel.off --landmarks pairs.txt --output map.txt \\\n"
+      "      --inverse inverse.txt --overlay overlay.txt --json report.json");
+  return command;
+}
+
+CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
+  CLI::App* command = app.add_subcommand(
+      "transfer", "Carry the textures of one surface to another of a different shape");
+  command->add_option("-o,--output", arguments.output, "Textured TARGET to write")
+      ->required()
+      ->type_name("GLB");
+  add_pair(*command, arguments.pair);
+  command->footer(
+      "\nExamples:\n"
+      "  crosspatch transfer cow.obj camel.off --output camel.glb\n"
+      "  crosspatch transfer cow.obj camel.off --landmarks pairs.txt --output camel.glb\n"
+      "  crosspatch render camel.glb --output camel.png");
+  return command;
+}
+
 void add_render(CLI::App& app, RenderArguments& arguments) {
   CLI::App* command =
       app.add_subcommand("render", "Draw one mesh, or two with corresponding colours, as a PNG");
@@ -133,6 +183,16 @@ void add_render(CLI::App& app, RenderArguments& arguments) {
 
 }  // namespace
 
+const CommonArguments& common_arguments(const Command& command) {
+  struct Common {
+    const CommonArguments& operator()(const InspectArguments& a) const { return a.common; }
+    const CommonArguments& operator()(const MapArguments& a) const { return a.pair.common; }
+    const CommonArguments& operator()(const TransferArguments& a) const { return a.pair.common; }
+    const CommonArguments& operator()(const RenderArguments& a) const { return a.common; }
+  };
+  return std::visit(Common{}, command);
+}
+
 tl::expected<Command, CommandLineStop> parse_command_line(int argc, const char* const* argv) {
   CLI::App app("Finds how one surface corresponds to another and carries textures across",
                "crosspatch");
@@ -143,8 +203,12 @@ tl::expected<Command, CommandLineStop> parse_command_line(int argc, const char* 
       "Exit codes: 0 done, 1 a quality gate failed, 2 usage, 3 bad input,\n"
       "4 no trustworthy correspondence, 5 out of memory or internal error.");
   InspectArguments inspect;
+  MapArguments map;
+  TransferArguments transfer;
   RenderArguments render;
   const CLI::App* inspect_command = add_inspect(app, inspect);
+  const CLI::App* map_command = add_map(app, map);
+  const CLI::App* transfer_command = add_transfer(app, transfer);
   add_render(app, render);
   try {
     app.parse(argc, argv);
@@ -163,6 +227,8 @@ tl::expected<Command, CommandLineStop> parse_command_line(int argc, const char* 
         CommandLineStop{ExitCode::kUsage, std::string(error.what()) + " (see crosspatch --help)"});
   }
   if (inspect_command->parsed()) return inspect;
+  if (map_command->parsed()) return map;
+  if (transfer_command->parsed()) return transfer;
   if (!render.map.empty() && render.mesh2.empty())
     return tl::unexpected(CommandLineStop{ExitCode::kUsage, "--map needs MESH2, the map's target"});
   return render;

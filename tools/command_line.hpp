@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tools/exit_code.hpp"
+#include "tools/pair_files.hpp"
 #include "tools/view.hpp"
 
 namespace crosspatch {
@@ -46,7 +47,30 @@ struct RenderArguments {
   char up = 'y';     ///< 'x', 'y', 'z', or 'p' for principal axes
 };
 
-using Command = std::variant<InspectArguments, RenderArguments>;
+/// What all commands over a pair of surfaces take.
+struct PairArguments {
+  CommonArguments common;
+  PairFiles files;
+};
+
+/// crosspatch map SOURCE TARGET
+struct MapArguments {
+  PairArguments pair;
+  std::string output;   ///< where each source vertex lies on the target
+  std::string inverse;  ///< the other way; empty = none
+  std::string overlay;  ///< the common subdivision; empty = none
+};
+
+/// crosspatch transfer SOURCE TARGET
+struct TransferArguments {
+  PairArguments pair;
+  std::string output;  ///< GLB
+};
+
+using Command = std::variant<InspectArguments, MapArguments, TransferArguments, RenderArguments>;
+
+/// What the command shares with all others.
+const CommonArguments& common_arguments(const Command& command);
 
 /// Why there is no command to run: help or the version was asked for (kDone, `text` belongs on
 /// standard output), or the arguments are wrong (kUsage, `text` is one line).

@@ -6,6 +6,12 @@ namespace {
 std::vector<std::string> files(const InspectArguments& arguments) {
   return {arguments.common.json};
 }
+std::vector<std::string> files(const MapArguments& arguments) {
+  return {arguments.output, arguments.inverse, arguments.overlay, arguments.pair.common.json};
+}
+std::vector<std::string> files(const TransferArguments& arguments) {
+  return {arguments.output, arguments.pair.common.json};
+}
 std::vector<std::string> files(const RenderArguments& arguments) {
   return {arguments.output, arguments.common.json};
 }

@@ -17,6 +17,9 @@ struct InputMesh {
 Result<PolygonSoup> read_input_soup(const std::string& path);
 Result<InputMesh> read_input(const std::string& path);
 
+/// The error with the path in front of its message, unless that names it already.
+Error with_path(const std::string& path, Error error);
+
 /// Reads a small text file (landmarks, maps). kBadInput with the path in the message.
 Result<std::string> read_input_text(const std::string& path);
 

@@ -32,8 +32,7 @@ int run_program(int argc, const char* const* argv) {
   }
   if (const Status writable = check_output_paths(output_paths(*command)); !writable)
     return stop(ExitCode::kUsage, writable.error().message);
-  const auto& common = std::visit(
-      [](const auto& c) -> const auto& { return c.common; }, *command);
+  const CommonArguments& common = common_arguments(*command);
   const auto machine = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(common.threads.value_or(machine)));

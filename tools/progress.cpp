@@ -13,6 +13,7 @@ Progress::Progress(bool quiet, int stages)
     : quiet_(quiet), terminal_(!quiet && isatty(STDERR_FILENO) != 0), stages_(stages) {}
 
 void Progress::begin(const std::string& stage) {
+  if (!stage_.empty()) end();
   stage_ = stage;
   begun_ = std::chrono::steady_clock::now();
   if (!terminal_) return;
@@ -28,11 +29,22 @@ void Progress::end(const std::string& summary) {
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begun_;
   records_.push_back({stage_, taken.count(), peak_memory_mib()});
   clear_bar();
-  if (!quiet_) fmt::print(stderr, "{:<9} {:7.2f} s  {}\n", stage_, taken.count(), summary);
+  if (!quiet_)
+    fmt::print(stderr,
+               "{:<9} {:7.2f} s{}{}\n",
+               stage_,
+               taken.count(),
+               summary.empty() ? "" : "  ",
+               summary);
+  stage_.clear();
 }
 
 void Progress::clear_bar() const {
   if (terminal_) fmt::print(stderr, "\r\033[K");
+}
+
+void print_warning(const std::string& warning) {
+  fmt::print(stderr, "crosspatch: warning: {}\n", warning);
 }
 
 double peak_memory_mib() {

@@ -20,9 +20,10 @@ class Progress {
   /// `stages` is the number of stages of the whole run, for the bar.
   Progress(bool quiet, int stages);
 
+  /// Begins a stage; ends the one before it where that is still open.
   void begin(const std::string& stage);
   /// Ends the stage begun last; `summary` says on one line what came out of it.
-  void end(const std::string& summary);
+  void end(const std::string& summary = "");
   /// Takes the bar away, so that an error line stands alone.
   void clear_bar() const;
 
@@ -36,6 +37,9 @@ class Progress {
   std::chrono::steady_clock::time_point begun_;
   std::vector<StageRecord> records_;
 };
+
+/// One warning line on standard error.
+void print_warning(const std::string& warning);
 
 /// The most memory the process has held so far, MiB.
 double peak_memory_mib();

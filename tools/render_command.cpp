@@ -32,18 +32,13 @@ struct Drawn {
   [[nodiscard]] Surface& surface() { return scene.surfaces.front(); }
 };
 
-Error named(const std::string& path, Error error) {
-  error.message = path + ": " + error.message;
-  return error;
-}
-
 Result<Drawn> read_drawn(const std::string& path, DrawnColors colors, char up) {
   Result<PolygonSoup> soup = read_input_soup(path);
   if (!soup) return tl::unexpected(soup.error());
   Drawn drawn{path, std::move(*soup), {}, Frame::Identity()};
   if (colors == DrawnColors::kOwn) {
     Result<Scene> scene = textured_scene(drawn.soup);
-    if (!scene) return tl::unexpected(named(path, scene.error()));
+    if (!scene) return tl::unexpected(with_path(path, scene.error()));
     drawn.scene = std::move(*scene);
   } else {
     drawn.scene.surfaces.push_back(plain_surface(drawn.soup));
@@ -63,7 +58,7 @@ Status apply_map(const std::string& map_path, DrawnColors colors, Drawn& source,
   const auto map = parse_map(*text,
                              static_cast<int>(source.soup.positions.rows()),
                              static_cast<int>(target.surface().F.rows()));
-  if (!map) return tl::unexpected(named(map_path, map.error()));
+  if (!map) return tl::unexpected(with_path(map_path, map.error()));
   const MatrixX3d& target_V = target.surface().V;
   const MatrixX3d places = image_positions(*map, target_V, target.surface().F);
   std::vector<Eigen::Index> mapped;
@@ -84,7 +79,7 @@ Status add_landmarks(const std::string& path, std::vector<Drawn>& drawn) {
   const auto landmarks = parse_landmarks(*text,
                                          static_cast<int>(drawn.front().soup.positions.rows()),
                                          static_cast<int>(drawn.back().soup.positions.rows()));
-  if (!landmarks) return tl::unexpected(named(path, landmarks.error()));
+  if (!landmarks) return tl::unexpected(with_path(path, landmarks.error()));
   constexpr double kRadius = 0.012;  // of the diagonal: seen in a panel, hides little
   for (size_t i = 0; i < landmarks->size(); ++i)
     for (size_t side = 0; side < drawn.size(); ++side) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "shapes.hpp"
+#include "tools/map_text.hpp"
 #include "tools/sha256.hpp"
 
 namespace crosspatch {
@@ -17,7 +18,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 TEST_F(Program, HelpAndVersionGoToStandardOutput) {
-  for (const char* command : {"", "inspect ", "render "}) {
+  for (const char* command : {"", "inspect ", "map ", "transfer ", "render "}) {
     const test::Outcome help = run(std::string(command) + "--help");
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_THAT(help.out, HasSubstr("Usage:"));
@@ -100,6 +101,101 @@ TEST_F(Program, ThreadsDoNotChangeTheBytes) {
                   .exit_code,
               0);
   EXPECT_EQ(test::read_text(folder / "out/1"), test::read_text(folder / "out/2"));
+}
+
+/// A closed surface without symmetries, as OBJ with one UV chart a quarter, and the pairs of the
+/// vertices 0 to 3 with themselves.
+class PairOfSurfaces : public Program {
+ protected:
+  void SetUp() override {
+    Program::SetUp();
+    TriangleMesh mesh = shapes::icosphere(3);
+    write_obj("source.obj", mesh);
+    for (auto p : mesh.V.rowwise())
+      p = Eigen::RowVector3d(1.4 * p.x() + 0.2 * p.y() * p.y(), p.y(), 0.8 * p.z() - 0.1 * p.x());
+    write_off("target.off", mesh);
+    write("pairs.txt", "0 0\n1 1\n2 2\n3 3\n");
+  }
+
+  void write_obj(const std::string& name, const TriangleMesh& mesh) const {
+    std::ofstream file(folder / name);
+    for (const auto& p : mesh.V.rowwise())
+      file << "v " << p.x() << ' ' << p.y() << ' ' << p.z() << "\nvt " << (p.x() + 1) / 2 << ' '
+           << (p.y() + 1) / 2 << '\n';
+    for (const auto& f : mesh.F.rowwise()) {
+      file << 'f';
+      for (const int v : f) file << ' ' << v + 1 << '/' << v + 1;
+      file << '\n';
+    }
+  }
+};
+
+TEST_F(PairOfSurfaces, MapWritesAllItsFiles) {
+  const test::Outcome done =
+      run("map source.obj target.off --landmarks pairs.txt --output out/map.txt --inverse "
+          "out/inverse.txt --overlay out/overlay.txt --json out/report.json");
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_EQ(done.out, "");
+  EXPECT_THAT(written(), ElementsAre("inverse.txt", "map.txt", "overlay.txt", "report.json"));
+  const TriangleMesh mesh = shapes::icosphere(3);
+  for (const char* name : {"map.txt", "inverse.txt"}) {
+    const auto map =
+        parse_map(test::read_text(folder / "out" / name), mesh.vertex_count(), mesh.face_count());
+    ASSERT_TRUE(map) << map.error().message;
+    for (int v = 0; v < 4; ++v) {  // landmarks are met exactly
+      const SurfacePoint& p = (*map)[static_cast<std::size_t>(v)];
+      int corner = 0;
+      EXPECT_EQ(p.bary.maxCoeff(&corner), 1);
+      EXPECT_EQ(mesh.F(p.face, corner), v);
+    }
+  }
+  EXPECT_TRUE(test::read_text(folder / "out/overlay.txt").starts_with("crosspatch-overlay 1\n"));
+  const auto report = nlohmann::json::parse(test::read_text(folder / "out/report.json"));
+  EXPECT_EQ(report["inputs"].size(), 3u);
+  EXPECT_EQ(report["inputs"][0]["role"], "source");
+  EXPECT_EQ(report["quality"]["flipped_triangles"], 0);
+  EXPECT_NEAR(report["quality"]["coverage"].get<double>(), 1, 1e-9);
+  EXPECT_GE(report["quality"]["symmetric_dirichlet_median"].get<double>(), 4 - 1e-9);
+  EXPECT_EQ(report["outputs"].size(), 3u);
+  EXPECT_GE(report["stages"].size(), 4u);
+}
+
+TEST_F(PairOfSurfaces, ThreadsDoNotChangeTheBytesOfMapAndTexture) {
+  for (const std::string threads : {"1", "2"}) {
+    const std::string common = " source.obj target.off --threads " + threads + " --quiet --output ";
+    EXPECT_EQ(
+        run("map" + common + "out/map" + threads + " --overlay out/overlay" + threads).exit_code,
+        0);
+    EXPECT_EQ(run("transfer" + common + "out/glb" + threads).exit_code, 0);
+  }
+  for (const char* name : {"out/map", "out/overlay", "out/glb"})
+    EXPECT_EQ(test::read_text(folder / (name + std::string("1"))),
+              test::read_text(folder / (name + std::string("2"))))
+        << name;
+  EXPECT_TRUE(test::read_text(folder / "out/glb1").starts_with("glTF"));
+}
+
+TEST_F(PairOfSurfaces, AnotherTopologyEndsWithFour) {
+  write_off("torus.off", shapes::torus(2, 0.7, 20, 10));
+  expect_error("map source.obj torus.off --landmarks pairs.txt --output out/map.txt", 4, "genus");
+  expect_error("transfer torus.off target.off --output out/a.glb --json out/a.json", 4, "genus");
+}
+
+TEST_F(PairOfSurfaces, BadLandmarksEndWithThree) {
+  write("bad.txt", "0 0\n1 642\n");
+  expect_error("map source.obj target.off --landmarks bad.txt --output out/map.txt",
+               3,
+               "bad.txt: line 2: target vertex 642 is outside [0, 642)");
+}
+
+TEST_F(PairOfSurfaces, AnInterruptedRunLeavesNothing) {
+  // Interrupted long before it can be done: reading alone starts later than that.
+  const std::string command =
+      "cd '" + folder.string() +
+      "' && timeout --signal=INT 0.3 '" CROSSPATCH_PROGRAM
+      "' transfer source.obj target.off --quiet --output out/a.glb --json out/a.json 2>/dev/null";
+  EXPECT_NE(std::system(command.c_str()), 0);
+  EXPECT_TRUE(written().empty());
 }
 
 TEST_F(Program, QuietIsQuiet) {

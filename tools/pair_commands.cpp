@@ -1,0 +1,131 @@
+// crosspatch map and crosspatch transfer: a run over a pair, then its outputs.
+#include <fmt/format.h>
+
+#include "tools/commands.hpp"
+#include "tools/map_text.hpp"
+#include "tools/output_files.hpp"
+#include "tools/pipeline.hpp"
+#include "tools/report.hpp"
+#include "transfer/gltf_write.hpp"
+
+namespace crosspatch {
+namespace {
+
+constexpr double kCoverageGate = 1 - 1e-9;  // rounding of summed areas
+constexpr double kSafeMargin = 0.1;  // above it the winner was right in 111 of 111 trial pairs
+
+/// What makes a finished run end with kGateFailed, a sentence each.
+std::vector<std::string> gate_failures(const PairRun& run) {
+  const MapQuality& quality = run.matched.result.quality;
+  std::vector<std::string> warnings;
+  if (quality.flipped > 0)
+    warnings.push_back(fmt::format("{} pieces of the map are turned over", quality.flipped));
+  if (quality.source_coverage < kCoverageGate || quality.target_coverage < kCoverageGate)
+    warnings.push_back(
+        fmt::format("the map covers {:.2f} % of the source and {:.2f} % of the target",
+                    100 * quality.source_coverage,
+                    100 * quality.target_coverage));
+  const Status bijective =
+      validate(run.matched.result.map, run.source.prepared.mesh, run.target.prepared.mesh);
+  if (!bijective) warnings.push_back("the map is not one-to-one: " + bijective.error().message);
+  return warnings;
+}
+
+std::map<std::string, double> map_figures(const MatchedMap& matched) {
+  const MapResult& map = matched.result;
+  const MapQuality& quality = map.quality;
+  return {{"flipped_triangles", quality.flipped},
+          {"coverage", quality.target_coverage},
+          {"source_coverage", quality.source_coverage},
+          {"symmetric_dirichlet_mean", quality.mean},
+          {"symmetric_dirichlet_median", quality.median},
+          {"symmetric_dirichlet_90", quality.percentile_90},
+          {"symmetric_dirichlet_99", quality.percentile_99},
+          {"worst_stretch", quality.worst_stretch},
+          {"initial_distortion", map.initial_distortion},
+          {"candidates", static_cast<double>(matched.ranking.size())},
+          {"margin", matched.margin},
+          {"overlay_points", map.map.point_count()},
+          {"overlay_polygons", map.map.polygon_count()}};
+}
+
+std::map<std::string, double> transfer_figures(const CarryTextureStatistics& statistics) {
+  return {{"coverage", statistics.coverage},
+          {"triangles", statistics.triangles},
+          {"seam_cuts", statistics.seam_cuts},
+          {"overlay_triangles", statistics.overlay_triangles},
+          {"max_uv_error_texels", statistics.max_uv_error_texels},
+          {"max_color_error", statistics.max_color_error},
+          {"unmapped_faces", statistics.unmapped_faces},
+          {"degenerate_polygons", statistics.degenerate_polygons}};
+}
+
+RunReport pair_report(const PairArguments& arguments, const PairRun& run) {
+  const PairFiles& files = arguments.files;
+  RunReport report;
+  report.inputs = {summarize("source", files.source, run.source.soup, run.source.prepared),
+                   summarize("target", files.target, run.target.soup, run.target.prepared)};
+  if (!files.landmarks.empty()) report.other_inputs = {files.landmarks};
+  report.quality = map_figures(run.matched);
+  report.warnings = gate_failures(run);
+  report.exit_code =
+      static_cast<int>(report.warnings.empty() ? ExitCode::kDone : ExitCode::kGateFailed);
+  if (run.matched.margin < kSafeMargin)
+    report.warnings.push_back(fmt::format(
+        "the choice among the candidate maps is unsure, left and right may be exchanged: "
+        "the margin is {:.3f}, {} is safe",
+        run.matched.margin,
+        kSafeMargin));
+  return report;
+}
+
+/// Writes `outputs` and, if asked for, the report that lists them; says the warnings.
+Result<ExitCode> finish(std::vector<OutputFile> outputs,
+                        RunReport report,
+                        const CommonArguments& common,
+                        const Progress& progress) {
+  for (const OutputFile& output : outputs) report.outputs.push_back(output.path);
+  report.stages = progress.records();
+  if (!common.json.empty()) outputs.push_back({common.json, report_json(report)});
+  if (const Status written = write_output_files(outputs); !written)
+    return tl::unexpected(written.error());
+  for (const std::string& warning : report.warnings) print_warning(warning);
+  return static_cast<ExitCode>(report.exit_code);
+}
+
+}  // namespace
+
+Result<ExitCode> run(const MapArguments& arguments) {
+  Progress progress(arguments.pair.common.quiet, stage_count(LastStage::kMap));
+  const Result<PairRun> run = run_pair(arguments.pair.files, LastStage::kMap, progress);
+  if (!run) return tl::unexpected(run.error());
+  const PreparedMesh &source = run->source.prepared, &target = run->target.prepared;
+  const SurfaceMap& map = run->matched.result.map;
+  std::vector<OutputFile> outputs = {
+      {arguments.output, map_text(map_of_file_vertices(map, source, target))}};
+  if (!arguments.inverse.empty())
+    outputs.push_back(
+        {arguments.inverse, map_text(map_of_file_vertices(inverse(map), target, source))});
+  if (!arguments.overlay.empty())
+    outputs.push_back({arguments.overlay, overlay_text(map, source, target)});
+  RunReport report = pair_report(arguments.pair, *run);
+  report.command = "map";
+  return finish(std::move(outputs), std::move(report), arguments.pair.common, progress);
+}
+
+Result<ExitCode> run(const TransferArguments& arguments) {
+  Progress progress(arguments.pair.common.quiet, stage_count(LastStage::kTransfer));
+  const Result<PairRun> run = run_pair(arguments.pair.files, LastStage::kTransfer, progress);
+  if (!run) return tl::unexpected(run.error());
+  Result<std::string> glb = encode_glb(run->carried.mesh);
+  if (!glb) return tl::unexpected(glb.error());
+  RunReport report = pair_report(arguments.pair, *run);
+  report.command = "transfer";
+  report.options = {{"mode", "keep"}};
+  for (const auto& [name, value] : transfer_figures(run->carried.statistics))
+    report.quality[name] = value;
+  return finish(
+      {{arguments.output, std::move(*glb)}}, std::move(report), arguments.pair.common, progress);
+}
+
+}  // namespace crosspatch

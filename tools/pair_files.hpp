@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+namespace crosspatch {
+
+/// Two surfaces and what a run is told about them.
+struct PairFiles {
+  std::string source;
+  std::string target;
+  std::string landmarks;  ///< file of corresponding vertices; empty = none
+};
+
+}  // namespace crosspatch

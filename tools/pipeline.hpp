@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "param/match.hpp"
+#include "tools/input.hpp"
+#include "tools/landmarks.hpp"
+#include "tools/pair_files.hpp"
+#include "tools/progress.hpp"
+#include "transfer/carry_texture.hpp"
+
+namespace crosspatch {
+
+/// How far a run over a pair of surfaces goes.
+enum class LastStage { kMap, kTransfer };
+
+/// The largest number of stages that report progress.
+constexpr int stage_count(LastStage last) {
+  return last == LastStage::kMap ? 6 : 7;
+}
+
+/// All that a run over a pair has made, stage by stage; later stages are empty where it stopped
+/// before.
+struct PairRun {
+  InputMesh source;
+  InputMesh target;
+  std::vector<Landmark> landmarks;  ///< vertices of the prepared meshes
+  MatchedMap matched;               ///< from the source's prepared mesh to the target's
+  CarriedTexture carried;           ///< the source's attributes on the target
+};
+
+/// file -> soup -> mesh -> landmarks -> map -> carried texture, as far as `last`.
+/// Errors are those of the stages, with the file's path where a file is to blame.
+Result<PairRun> run_pair(const PairFiles& files, LastStage last, Progress& progress);
+
+/// The landmarks as vertices of the prepared meshes. Pairs that repeat another after welding are
+/// dropped. kBadInput with the file's vertex: it belongs to a part that was left out, or welding
+/// gives it two partners.
+Result<std::vector<Landmark>> mesh_landmarks(const std::vector<FileLandmark>& landmarks,
+                                             const PreparedMesh& source,
+                                             const PreparedMesh& target);
+
+}  // namespace crosspatch
