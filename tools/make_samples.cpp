@@ -15,7 +15,7 @@ namespace {
 
 struct Sample {
   Creature creature;
-  double edge = 0;  ///< mean edge length; chosen so that thin gaps fall on the grid's good side
+  double edge = 0;  ///< about the mean edge length
   const CoatColors* coat = nullptr;
 };
 

@@ -36,7 +36,7 @@ struct Creature {
 Creature make_lira();
 /// "bodo": stocky and short-legged, with a big drooping head and a stub of a tail.
 Creature make_bodo();
-/// "tola": tall, with a long upright neck and a thin hanging tail.
+/// "tola": tall, with an upright neck and a hanging tail.
 Creature make_tola();
 
 /// Approximate signed distance to the skin: negative inside, linear near the surface.

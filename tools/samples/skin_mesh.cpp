@@ -22,7 +22,8 @@ struct Grid {
   }
 };
 
-Grid sample(const Creature& creature, double cell) {
+/// `shift`: of the grid, in cells along each axis.
+Grid sample(const Creature& creature, double cell, double shift) {
   Vector3d low = Vector3d::Constant(1e9), high = Vector3d::Constant(-1e9);
   for (const Limb& limb : creature.limbs) {
     low = low.cwiseMin((limb.a.array() - limb.radius_a).matrix())
@@ -33,7 +34,7 @@ Grid sample(const Creature& creature, double cell) {
   Grid g;
   g.cell = cell;
   // Three cells of margin hold the swelling where limbs blend.
-  g.origin = low.array() - 3 * cell;
+  g.origin = low.array() - (3 + shift) * cell;
   for (int i = 0; i < 3; ++i) g.nodes[idx(i)] = static_cast<int>((high[i] - low[i]) / cell) + 7;
   for (int z = 0; z < g.nodes[2]; ++z)
     for (int y = 0; y < g.nodes[1]; ++y)
@@ -151,11 +152,9 @@ void relax(const Creature& creature, TriangleMesh& mesh, int rounds) {
   }
 }
 
-}  // namespace
-
-Result<TriangleMesh> skin_mesh(const Creature& creature, double edge) {
-  // Cells and the edges of their dual are of one size; diagonals are longer.
-  const Polygons polygons = dual_contour(sample(creature, edge / 1.15));
+/// The dual contour as a mesh; kInternal unless it is one closed surface of genus 0.
+Result<TriangleMesh> closed_mesh(const Creature& creature, const Grid& grid) {
+  const Polygons polygons = dual_contour(grid);
   MatrixX3d V(static_cast<Eigen::Index>(polygons.points.size()), 3);
   for (std::size_t i = 0; i < polygons.points.size(); ++i)
     V.row(static_cast<Eigen::Index>(i)) = polygons.points[i].transpose();
@@ -169,8 +168,23 @@ Result<TriangleMesh> skin_mesh(const Creature& creature, double edge) {
                             creature.name,
                             last + 1,
                             euler_characteristic(*mesh)));
-  relax(creature, *mesh, 12);
   return mesh;
+}
+
+}  // namespace
+
+Result<TriangleMesh> skin_mesh(const Creature& creature, double edge) {
+  // Cells and the edges of their dual are of one size; diagonals are longer.
+  const double cell = edge / 1.15;
+  // Two sheets of the skin may meet in one cell, which dual contouring cannot tell apart; another
+  // place of the grid mends that.
+  constexpr int kShifts = 16;
+  for (int i = 0;; ++i) {
+    auto mesh = closed_mesh(creature, sample(creature, cell, double(i) / kShifts));
+    if (!mesh && i + 1 < kShifts) continue;
+    if (mesh) relax(creature, *mesh, 12);
+    return mesh;
+  }
 }
 
 }  // namespace crosspatch
