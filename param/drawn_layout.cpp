@@ -220,25 +220,6 @@ Result<DrawnLayout> Drawing::run() {
   return std::move(result_);
 }
 
-/// Per half-edge: the dart that runs along it, or -1.
-Result<std::vector<int>> darts_on_halfedges(const TriangleMesh& mesh,
-                                            const std::vector<std::vector<int>>& path) {
-  std::vector<int> dart(idx(mesh.halfedge_count()), -1);
-  for (size_t a = 0; a < path.size(); ++a)
-    for (size_t i = 1; i < path[a].size(); ++i) {
-      const int h = find_halfedge(mesh, path[a][i - 1], path[a][i]);
-      const int t = find_halfedge(mesh, path[a][i], path[a][i - 1]);
-      if (h < 0 || t < 0 || dart[idx(h)] >= 0)
-        return fail(
-            ErrorCode::kInternal,
-            fmt::format(
-                "layout: arc {} leaves the edges or meets another at vertex {}", a, path[a][i]));
-      dart[idx(h)] = 2 * static_cast<int>(a);
-      dart[idx(t)] = 2 * static_cast<int>(a) + 1;
-    }
-  return dart;
-}
-
 Status check_paths(const DrawnLayout& drawn) {
   std::vector<int> uses(idx(drawn.mesh.vertex_count()), 0);
   for (const int v : drawn.node_vertex) uses[idx(v)] = 1;
@@ -256,6 +237,24 @@ Status check_paths(const DrawnLayout& drawn) {
 }
 
 }  // namespace
+
+Result<std::vector<int>> darts_on_halfedges(const TriangleMesh& mesh,
+                                            const std::vector<std::vector<int>>& path) {
+  std::vector<int> dart(idx(mesh.halfedge_count()), -1);
+  for (size_t a = 0; a < path.size(); ++a)
+    for (size_t i = 1; i < path[a].size(); ++i) {
+      const int h = find_halfedge(mesh, path[a][i - 1], path[a][i]);
+      const int t = find_halfedge(mesh, path[a][i], path[a][i - 1]);
+      if (h < 0 || t < 0 || dart[idx(h)] >= 0)
+        return fail(
+            ErrorCode::kInternal,
+            fmt::format(
+                "layout: arc {} leaves the edges or meets another at vertex {}", a, path[a][i]));
+      dart[idx(h)] = 2 * static_cast<int>(a);
+      dart[idx(t)] = 2 * static_cast<int>(a) + 1;
+    }
+  return dart;
+}
 
 Result<std::vector<int>> label_patches(const TriangleMesh& mesh,
                                        const QuadLayout& layout,

@@ -37,6 +37,11 @@ Result<DrawnLayout> draw_layout(const QuadLayout& layout, const DiscreteGradient
 /// Checks every invariant of DrawnLayout.
 Status validate(const DrawnLayout& drawn);
 
+/// Per half-edge of `mesh`: the dart that runs along it, or -1, given the arcs as paths of edges.
+/// kInternal where a path leaves the edges or two share one.
+Result<std::vector<int>> darts_on_halfedges(const TriangleMesh& mesh,
+                                            const std::vector<std::vector<int>>& path);
+
 /// Labels the faces of `mesh` by the faces of `layout`, given the arcs as paths of edges (see
 /// DrawnLayout). kInternal where the labels contradict each other or a face is not reached.
 Result<std::vector<int>> label_patches(const TriangleMesh& mesh,
