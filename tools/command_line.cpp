@@ -87,6 +87,35 @@ void add_pair(CLI::App& command, PairArguments& pair) {
   add_common(command, pair.common);
 }
 
+CLI::App* add_match(CLI::App& app, MatchArguments& arguments) {
+  CLI::App* command =
+      app.add_subcommand("match", "Find a few corresponding points of two surfaces");
+  command
+      ->add_option("-o,--output",
+                   arguments.output,
+                   "Lines 'kind,source_vertex,target_vertex,confidence' under a header")
+      ->required()
+      ->type_name("CSV");
+  add_parsed(
+      *command,
+      "--method",
+      "default: tips, chosen by the maps through them; paper: critical points of the feature "
+      "graphs by spectral matching, as published [default]",
+      "default|paper",
+      [&arguments](const std::string& text) -> std::string {
+        if (text != "default" && text != "paper")
+          return fmt::format("--method: '{}' is none of default, paper", text);
+        arguments.method = text == "paper" ? MatchChoice::kPaper : MatchChoice::kDefault;
+        return "";
+      });
+  add_pair(*command, arguments.pair);
+  command->footer(
+      "\nExamples:\n"
+      "  crosspatch match cow.obj camel.off --output matches.csv\n"
+      "  crosspatch match cow.obj camel.off --method paper --output matches.csv");
+  return command;
+}
+
 CLI::App* add_map(CLI::App& app, MapArguments& arguments) {
   CLI::App* command =
       app.add_subcommand("map", "Map one surface onto another, one-to-one, as text files");
@@ -186,6 +215,7 @@ void add_render(CLI::App& app, RenderArguments& arguments) {
 const CommonArguments& common_arguments(const Command& command) {
   struct Common {
     const CommonArguments& operator()(const InspectArguments& a) const { return a.common; }
+    const CommonArguments& operator()(const MatchArguments& a) const { return a.pair.common; }
     const CommonArguments& operator()(const MapArguments& a) const { return a.pair.common; }
     const CommonArguments& operator()(const TransferArguments& a) const { return a.pair.common; }
     const CommonArguments& operator()(const RenderArguments& a) const { return a.common; }
@@ -203,10 +233,12 @@ tl::expected<Command, CommandLineStop> parse_command_line(int argc, const char* 
       "Exit codes: 0 done, 1 a quality gate failed, 2 usage, 3 bad input,\n"
       "4 no trustworthy correspondence, 5 out of memory or internal error.");
   InspectArguments inspect;
+  MatchArguments match;
   MapArguments map;
   TransferArguments transfer;
   RenderArguments render;
   const CLI::App* inspect_command = add_inspect(app, inspect);
+  const CLI::App* match_command = add_match(app, match);
   const CLI::App* map_command = add_map(app, map);
   const CLI::App* transfer_command = add_transfer(app, transfer);
   add_render(app, render);
@@ -228,6 +260,12 @@ tl::expected<Command, CommandLineStop> parse_command_line(int argc, const char* 
   }
   if (inspect_command->parsed()) return inspect;
   if (map_command->parsed()) return map;
+  if (match_command->parsed()) {
+    if (match.method == MatchChoice::kPaper && !match.pair.files.landmarks.empty())
+      return tl::unexpected(
+          CommandLineStop{ExitCode::kUsage, "--method paper takes no --landmarks"});
+    return match;
+  }
   if (transfer_command->parsed()) return transfer;
   if (!render.map.empty() && render.mesh2.empty())
     return tl::unexpected(CommandLineStop{ExitCode::kUsage, "--map needs MESH2, the map's target"});

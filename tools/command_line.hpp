@@ -53,6 +53,19 @@ struct PairArguments {
   PairFiles files;
 };
 
+/// How matches are found.
+enum class MatchChoice {
+  kDefault,  ///< candidates judged by their maps
+  kPaper,    ///< spectral matching of feature graphs
+};
+
+/// crosspatch match SOURCE TARGET
+struct MatchArguments {
+  PairArguments pair;
+  std::string output;  ///< CSV
+  MatchChoice method = MatchChoice::kDefault;
+};
+
 /// crosspatch map SOURCE TARGET
 struct MapArguments {
   PairArguments pair;
@@ -67,7 +80,8 @@ struct TransferArguments {
   std::string output;  ///< GLB
 };
 
-using Command = std::variant<InspectArguments, MapArguments, TransferArguments, RenderArguments>;
+using Command = std::
+    variant<InspectArguments, MatchArguments, MapArguments, TransferArguments, RenderArguments>;
 
 /// What the command shares with all others.
 const CommonArguments& common_arguments(const Command& command);

@@ -6,6 +6,9 @@ namespace {
 std::vector<std::string> files(const InspectArguments& arguments) {
   return {arguments.common.json};
 }
+std::vector<std::string> files(const MatchArguments& arguments) {
+  return {arguments.output, arguments.pair.common.json};
+}
 std::vector<std::string> files(const MapArguments& arguments) {
   return {arguments.output, arguments.inverse, arguments.overlay, arguments.pair.common.json};
 }

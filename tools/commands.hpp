@@ -13,6 +13,7 @@ std::vector<std::string> output_paths(const Command& command);
 /// Runs a command and writes its outputs, all or none. kDone or kGateFailed; an error otherwise,
 /// with nothing written.
 Result<ExitCode> run(const InspectArguments& arguments);
+Result<ExitCode> run(const MatchArguments& arguments);
 Result<ExitCode> run(const MapArguments& arguments);
 Result<ExitCode> run(const TransferArguments& arguments);
 Result<ExitCode> run(const RenderArguments& arguments);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -58,6 +59,12 @@ std::string map_summary(const MatchedMap& matched) {
                      margin);
 }
 
+/// What the paper's matchers look at of one surface.
+Result<MatchingShape> paper_shape(const TriangleMesh& mesh) {
+  return compute_features(mesh).and_then(
+      [&](const ShapeFeatures& features) { return matching_shape(mesh, features); });
+}
+
 }  // namespace
 
 Result<std::vector<Landmark>> mesh_landmarks(const std::vector<FileLandmark>& landmarks,
@@ -90,7 +97,7 @@ Result<std::vector<Landmark>> mesh_landmarks(const std::vector<FileLandmark>& la
   return result;
 }
 
-Result<PairRun> run_pair(const PairFiles& files, LastStage last, Progress& progress) {
+Result<PairRun> read_pair(const PairFiles& files, Progress& progress) {
   PairRun run;
   Result<InputMesh> source = read_stage("source", files.source, progress);
   if (!source) return tl::unexpected(source.error());
@@ -98,13 +105,17 @@ Result<PairRun> run_pair(const PairFiles& files, LastStage last, Progress& progr
   Result<InputMesh> target = read_stage("target", files.target, progress);
   if (!target) return tl::unexpected(target.error());
   run.target = std::move(*target);
-  if (!files.landmarks.empty()) {
-    Result<std::vector<Landmark>> landmarks =
-        read_landmarks(files.landmarks, run.source, run.target);
-    if (!landmarks) return tl::unexpected(landmarks.error());
-    run.landmarks = std::move(*landmarks);
-  }
+  if (files.landmarks.empty()) return run;
+  Result<std::vector<Landmark>> landmarks = read_landmarks(files.landmarks, run.source, run.target);
+  if (!landmarks) return tl::unexpected(landmarks.error());
+  run.landmarks = std::move(*landmarks);
+  return run;
+}
 
+Result<PairRun> run_pair(const PairFiles& files, LastStage last, Progress& progress) {
+  Result<PairRun> read = read_pair(files, progress);
+  if (!read) return read;
+  PairRun run = std::move(*read);
   Result<MatchedMap> matched = find_map(run, progress);
   if (!matched) return tl::unexpected(matched.error());
   run.matched = std::move(*matched);
@@ -121,6 +132,35 @@ Result<PairRun> run_pair(const PairFiles& files, LastStage last, Progress& progr
                            run.carried.statistics.triangles,
                            run.carried.statistics.seam_cuts));
   return run;
+}
+
+Result<Matching> paper_matching(const PairRun& run, Progress& progress) {
+  progress.begin("features");
+  const Result<MatchingShape> source = paper_shape(normalized(run.source.prepared.mesh));
+  if (!source) return tl::unexpected(source.error());
+  const Result<MatchingShape> target = paper_shape(normalized(run.target.prepared.mesh));
+  if (!target) return tl::unexpected(target.error());
+  progress.end(fmt::format(
+      "{} and {} critical points", source->graph.node_count(), target->graph.node_count()));
+  progress.begin("match");
+  Result<Matching> matching = spectral_matching(*source, *target);
+  if (matching) progress.end(fmt::format("{} matches", matching->matches.size()));
+  return matching;
+}
+
+Matching judged_matching(const PairRun& run) {
+  Matching matching;
+  const double confidence = std::clamp(run.matched.margin / kSafeMargin, 0.0, 1.0);
+  for (const Landmark& landmark : run.matched.ranking.front().landmarks)
+    matching.matches.push_back({.kind = NodeKind::kMaximum,
+                                .source_vertex = landmark.source_vertex,
+                                .target_vertex = landmark.target_vertex,
+                                .confidence = landmark.pinned ? 1 : confidence});
+  std::sort(matching.matches.begin(), matching.matches.end(), [](const Match& a, const Match& b) {
+    return a.confidence != b.confidence ? a.confidence > b.confidence
+                                        : a.source_vertex < b.source_vertex;
+  });
+  return matching;
 }
 
 }  // namespace crosspatch

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/spectral_matching.hpp"
 #include "param/match.hpp"
 #include "tools/input.hpp"
 #include "tools/landmarks.hpp"
@@ -30,9 +31,22 @@ struct PairRun {
   CarriedTexture carried;           ///< the source's attributes on the target
 };
 
+/// file -> soup -> mesh -> landmarks. kBadInput with the file's path.
+Result<PairRun> read_pair(const PairFiles& files, Progress& progress);
+
 /// file -> soup -> mesh -> landmarks -> map -> carried texture, as far as `last`.
 /// Errors are those of the stages, with the file's path where a file is to blame.
 Result<PairRun> run_pair(const PairFiles& files, LastStage last, Progress& progress);
+
+/// The paper's matching of a pair that has been read: its features matched by spectral matching.
+Result<Matching> paper_matching(const PairRun& run, Progress& progress);
+
+/// The winner among the candidates that a finished map was chosen from, as a matching. The
+/// confidence of found pairs is the margin over kSafeMargin, at most 1; that of landmarks is 1.
+Matching judged_matching(const PairRun& run);
+
+/// Margin of the judge above which its winner was right in 111 of 111 trial pairs.
+constexpr double kSafeMargin = 0.1;
 
 /// The landmarks as vertices of the prepared meshes. Pairs that repeat another after welding are
 /// dropped. kBadInput with the file's vertex: it belongs to a part that was left out, or welding

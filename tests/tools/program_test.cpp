@@ -5,10 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
 
 #include "shapes.hpp"
 #include "tools/map_text.hpp"
 #include "tools/sha256.hpp"
+#include "tools/text_lines.hpp"
 
 namespace crosspatch {
 namespace {
@@ -18,7 +21,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 TEST_F(Program, HelpAndVersionGoToStandardOutput) {
-  for (const char* command : {"", "inspect ", "map ", "transfer ", "render "}) {
+  for (const char* command : {"", "inspect ", "match ", "map ", "transfer ", "render "}) {
     const test::Outcome help = run(std::string(command) + "--help");
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_THAT(help.out, HasSubstr("Usage:"));
@@ -43,6 +46,9 @@ TEST_F(Program, WrongUsageEndsWithTwo) {
   expect_error("render mesh.off --output out/a.png --views front,above", 2, "above");
   expect_error("render mesh.off --output out/a.png --texture wood", 2, "wood");
   expect_error("render mesh.off --output out/a.png --map map.txt", 2, "MESH2");
+  const std::string match = "match mesh.off mesh.off --output out/m.csv ";
+  expect_error(match + "--method guess", 2, "'guess' is none of default, paper");
+  expect_error(match + "--method paper --landmarks pairs.txt", 2, "takes no --landmarks");
 }
 
 TEST_F(Program, OutputsThatCannotBeWrittenAreToldBeforeTheWork) {
@@ -103,18 +109,23 @@ TEST_F(Program, ThreadsDoNotChangeTheBytes) {
   EXPECT_EQ(test::read_text(folder / "out/1"), test::read_text(folder / "out/2"));
 }
 
-/// A closed surface without symmetries, as OBJ with one UV chart a quarter, and the pairs of the
+/// Two bent ellipsoids with the same triangles, the first with UVs, and landmarks that pair
 /// vertices 0 to 3 with themselves.
 class PairOfSurfaces : public Program {
  protected:
   void SetUp() override {
     Program::SetUp();
-    TriangleMesh mesh = shapes::icosphere(3);
-    write_obj("source.obj", mesh);
-    for (auto p : mesh.V.rowwise())
-      p = Eigen::RowVector3d(1.4 * p.x() + 0.2 * p.y() * p.y(), p.y(), 0.8 * p.z() - 0.1 * p.x());
-    write_off("target.off", mesh);
+    write_obj("source.obj", egg(1.6));
+    write_off("target.off", egg(1.4));
     write("pairs.txt", "0 0\n1 1\n2 2\n3 3\n");
+  }
+
+  static TriangleMesh egg(double length) {
+    TriangleMesh mesh = shapes::icosphere(3);
+    for (auto p : mesh.V.rowwise())
+      p = Eigen::RowVector3d(
+          length * p.x() + 0.2 * p.y() * p.y(), p.y(), 0.8 * p.z() - 0.1 * p.x());
+    return mesh;
   }
 
   void write_obj(const std::string& name, const TriangleMesh& mesh) const {
@@ -173,6 +184,32 @@ TEST_F(PairOfSurfaces, ThreadsDoNotChangeTheBytesOfMapAndTexture) {
               test::read_text(folder / (name + std::string("2"))))
         << name;
   EXPECT_TRUE(test::read_text(folder / "out/glb1").starts_with("glTF"));
+}
+
+TEST_F(PairOfSurfaces, MatchesNameVerticesOfBothFilesOnce) {
+  for (const std::string method : {"default", "paper"}) {
+    const test::Outcome done =
+        run("match source.obj target.off --output out/matches.csv --method " + method);
+    ASSERT_EQ(done.exit_code, 0) << done.err;
+    const std::string csv = test::read_text(folder / "out/matches.csv");
+    EXPECT_TRUE(csv.starts_with("kind,source_vertex,target_vertex,confidence\n"));
+    const auto lines = text_lines(csv);
+    EXPECT_GE(lines.size(), 3u) << method;
+    std::set<std::pair<std::string_view, int>> sources, targets;
+    for (std::size_t i = 1; i < lines.size(); ++i) {
+      const auto& words = lines[i].words;
+      ASSERT_EQ(words.size(), 4u);
+      EXPECT_THAT(words[0], testing::AnyOf("max", "saddle", "min"));
+      int source = -1, target = -1;
+      double confidence = -1;
+      ASSERT_TRUE(parse_number(words[1], source) && parse_number(words[2], target) &&
+                  parse_number(words[3], confidence));
+      EXPECT_TRUE(source >= 0 && source < 642 && target >= 0 && target < 642);
+      EXPECT_TRUE(confidence >= 0 && confidence <= 1);
+      EXPECT_TRUE(sources.insert({words[0], source}).second) << "matched once with one kind";
+      EXPECT_TRUE(targets.insert({words[0], target}).second);
+    }
+  }
 }
 
 TEST_F(PairOfSurfaces, AnotherTopologyEndsWithFour) {
