@@ -8,10 +8,10 @@
 namespace crosspatch {
 
 /// The layout drawn on the other surface: every arc of `drawn` pushed through `map`, a bijection
-/// from drawn.mesh to `target`. The target is refined where arcs run, so that their images are
-/// exact paths of edges; its faces away from arcs stay whole but for vertices on their sides. The
-/// layout and the numbering of nodes, arcs and patches are the same, so cells correspond, and no
-/// two arcs can cross. kBadInput if the map leaves a vertex out.
+/// from drawn.mesh to `target`. The target is refined where arcs run: they cross its edges exactly
+/// where their images do, and are drawn straight in between. The layout and the numbering of nodes,
+/// arcs and patches are the same, so cells correspond, and no two arcs can cross. kBadInput if the
+/// map leaves a vertex out.
 /// Source: Feng et al. 2013, Sec. 6 (copying the structure of the complex).
 Result<DrawnLayout> copy_layout(const DrawnLayout& drawn,
                                 const SurfaceMap& map,

@@ -12,7 +12,7 @@ enum class PatchBoundary {
 
 struct ParametrizeOptions {
   PatchBoundary boundary = PatchBoundary::kFixed;
-  int max_rounds = 60;      ///< 10-20 are usual whatever the size of the mesh
+  int max_rounds = 100;     ///< 10-20 are usual, 60 from starts with areas 1e-6 too small
   double tolerance = 1e-6;  ///< stop when a round lowers the energy by less than this share
   /// Rounds after which weights are stiffened (Bommes et al. 2009); 0 = plain symmetric Dirichlet.
   int stiffening_rounds = 6;
