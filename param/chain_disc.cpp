@@ -250,10 +250,11 @@ double one_way_distortion(const ChainDisc& a, const ChainDisc& b) {
   const SphereProblem rest = make_sphere_problem(a.mesh.F, a.mesh.V, {});
   double sum = 0;
   for (int f = 0; f < a.mesh.face_count(); ++f) {
-    const double e = symmetric_dirichlet(rest.rest_inverse[at(f)],
-                                         image.row(a.mesh.F(f, 0)).transpose(),
-                                         image.row(a.mesh.F(f, 1)).transpose(),
-                                         image.row(a.mesh.F(f, 2)).transpose());
+    const double e = distortion(Distortion::kSymmetricDirichlet,
+                                rest.rest_inverse[at(f)],
+                                image.row(a.mesh.F(f, 0)).transpose(),
+                                image.row(a.mesh.F(f, 1)).transpose(),
+                                image.row(a.mesh.F(f, 2)).transpose());
     sum += rest.rest_area[f] * std::log(std::min(e, kWorst));
   }
   return sum / rest.rest_area.sum();
@@ -300,7 +301,7 @@ MatrixX3d to_disc(const ChainDisc& disc, const MatrixX3d& values) {
 
 MatrixX3d through_disc(const ChainDisc& a, const ChainDisc& b, const MatrixX3d& values_b) {
   const TriangleMesh surface{values_b, b.mesh.F, b.mesh.twin, b.mesh.out};
-  const MeshLift lift(surface, b.domain, 0);
+  const MeshLift lift(surface, b.domain);
   MatrixX3d result(a.mesh.vertex_count(), values_b.cols());
   std::vector<int> hint(at(a.mesh.vertex_count()), -1);
   // Along the edges of a, each search starts beside the last one.

@@ -25,37 +25,6 @@ Eigen::Matrix3d SphereLift::derivative(const Vector3d& /*x*/, int /*face*/) cons
   return kRadius * Eigen::Matrix3d::Identity();
 }
 
-MeshLift::MeshLift(const TriangleMesh& mesh, const MatrixX3d& X, int smoothing_rounds)
-    : mesh_(&mesh), X_(&X) {
-  if (smoothing_rounds == 0) return;
-  const size_t n = at(mesh.vertex_count());
-  vertex_derivative_.assign(n, Eigen::Matrix3d::Zero());
-  std::vector<double> weight(n, 0);
-  for (int f = 0; f < mesh.face_count(); ++f) {
-    const Vector3d x0 = X.row(mesh.F(f, 0)), x1 = X.row(mesh.F(f, 1)), x2 = X.row(mesh.F(f, 2));
-    const double area = (x1 - x0).cross(x2 - x0).norm();
-    for (int k = 0; k < 3; ++k) {
-      const int v = mesh.F(f, k);
-      vertex_derivative_[at(v)] += area * face_derivative(X.row(v).transpose(), f);
-      weight[at(v)] += area;
-    }
-  }
-  for (size_t v = 0; v < n; ++v) vertex_derivative_[v] /= weight[v];
-  for (int round = 1; round < smoothing_rounds; ++round) {
-    std::vector<Eigen::Matrix3d> smooth(n);
-    for (int v = 0; v < mesh.vertex_count(); ++v) {
-      Eigen::Matrix3d sum = vertex_derivative_[at(v)];
-      int count = 1;
-      for_each_outgoing(mesh, v, [&](int h) {
-        sum += vertex_derivative_[at(mesh.to(h))];
-        ++count;
-      });
-      smooth[at(v)] = sum / count;
-    }
-    vertex_derivative_ = std::move(smooth);
-  }
-}
-
 Vector3d MeshLift::barycentric(const Vector3d& x, int face) const {
   const auto corner = mesh_->F.row(face);
   const Vector3d a = X_->row(corner[0]), b = X_->row(corner[1]), c = X_->row(corner[2]);
@@ -67,7 +36,7 @@ Vector3d MeshLift::barycentric(const Vector3d& x, int face) const {
   return sum > 0 ? Vector3d(w / sum) : Vector3d::Constant(1.0 / 3);
 }
 
-Eigen::Matrix3d MeshLift::face_derivative(const Vector3d& x, int face) const {
+Eigen::Matrix3d MeshLift::derivative(const Vector3d& x, int face) const {
   Eigen::Matrix3d corners, values;
   for (int k = 0; k < 3; ++k) {
     corners.col(k) = X_->row(mesh_->F(face, k)).transpose();
@@ -118,14 +87,6 @@ SurfacePoint MeshLift::surface_point(const Vector3d& x, int& face) const {
 
 Vector3d MeshLift::point(const Vector3d& x, int& face) const {
   return position(*mesh_, surface_point(x, face));
-}
-
-Eigen::Matrix3d MeshLift::derivative(const Vector3d& x, int face) const {
-  if (vertex_derivative_.empty()) return face_derivative(x, face);
-  const Vector3d b = barycentric(x, face);
-  Eigen::Matrix3d d = Eigen::Matrix3d::Zero();
-  for (int k = 0; k < 3; ++k) d += b[k] * vertex_derivative_[at(mesh_->F(face, k))];
-  return d;
 }
 
 }  // namespace crosspatch

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/LU>
-#include <vector>
 
 #include "core/surface_point.hpp"
 
@@ -37,10 +36,8 @@ class SphereLift final : public Lift {
 class MeshLift final : public Lift {
  public:
   /// `X` (#V x 3, unit rows) embeds `mesh`: every face is positively oriented. Both must outlive
-  /// the lift. The derivative is the face's own where smoothing_rounds == 0, else that of the
-  /// vertices averaged so many times over their neighbours: facets make the exact one too noisy for
-  /// an optimiser that looks further than one facet.
-  MeshLift(const TriangleMesh& mesh, const MatrixX3d& X, int smoothing_rounds);
+  /// the lift; rows of X may change.
+  MeshLift(const TriangleMesh& mesh, const MatrixX3d& X) : mesh_(&mesh), X_(&X) {}
 
   Vector3d point(const Vector3d& x, int& face) const override;
   Eigen::Matrix3d derivative(const Vector3d& x, int face) const override;
@@ -51,12 +48,10 @@ class MeshLift final : public Lift {
   SurfacePoint surface_point(const Vector3d& x, int& face) const;
 
  private:
-  [[nodiscard]] Eigen::Matrix3d face_derivative(const Vector3d& x, int face) const;
   [[nodiscard]] Vector3d barycentric(const Vector3d& x, int face) const;
 
   const TriangleMesh* mesh_;
   const MatrixX3d* X_;
-  std::vector<Eigen::Matrix3d> vertex_derivative_;  ///< empty if not smoothed
 };
 
 }  // namespace crosspatch

@@ -18,6 +18,14 @@ size_t at(int i) {
   return static_cast<size_t>(i);
 }
 
+ProgressiveMesh full_level(const TriangleMesh& mesh) {
+  ProgressiveMesh p;
+  p.vertex_count = mesh.vertex_count();
+  p.coarsest = mesh.F;
+  p.alive.assign(at(mesh.face_count()), true);
+  return p;
+}
+
 /// The source's triangulation on the target's sphere, from the coarsest usable level to the full
 /// mesh.
 class SphereMap {
@@ -30,8 +38,8 @@ class SphereMap {
         target_(target),
         options_(options),
         level_(source.progressive),
-        exact_(target.mesh, target.X, 0),
-        smooth_(target.mesh, target.X, 3) {
+        Y_(target.X),
+        lift_(target.mesh, Y_) {
     X_ = MatrixX3d::Zero(source.mesh.vertex_count(), 3);
     hint_.assign(at(source.mesh.vertex_count()), 0);
     fixed_.assign(hint_.size(), false);
@@ -49,8 +57,7 @@ class SphereMap {
     const MatrixX3d image = through_disc(initial.source_disc, initial.target_disc, on_target);
     for (int i = 0; i < a.mesh.vertex_count(); ++i)
       X_.row(a.vertex[at(i)]) = image.row(initial.source_disc.disc_vertex[at(i)]).normalized();
-    for (const Landmark& l : landmarks_)
-      X_.row(l.source_vertex) = target_.X.row(l.target_vertex);
+    for (const Landmark& l : landmarks_) X_.row(l.source_vertex) = Y_.row(l.target_vertex);
     while (level_.vertex_count() < a.mesh.vertex_count()) level_.split();
     if (!collapse_turned_faces(X_, fixed_, level_))
       return fail(ErrorCode::kNoCorrespondence,
@@ -59,16 +66,12 @@ class SphereMap {
   }
 
   void optimize_coarse() {
-    relax_worst(level_, source_.mesh.V, exact_, pinned_, X_, hint_);
-    descend(smooth_, true, options_.coarse_iterations);
-    relax_worst(level_, source_.mesh.V, exact_, pinned_, X_, hint_);
-    descend(exact_, true, options_.coarse_iterations);
-    relax_worst(level_, source_.mesh.V, exact_, pinned_, X_, hint_);
-    descend(smooth_, false, options_.coarse_iterations);
-    descend(exact_, false, options_.coarse_iterations);
+    relax_worst(level_, source_.mesh.V, lift_, pinned_, X_, hint_);
+    descend(options_.coarse_iterations);
+    relax_worst(level_, source_.mesh.V, lift_, pinned_, X_, hint_);
+    descend(options_.coarse_iterations);
     if (release()) {
-      descend(exact_, true, options_.coarse_iterations);
-      descend(exact_, false, options_.coarse_iterations);
+      descend(options_.coarse_iterations);
     }
   }
 
@@ -76,18 +79,44 @@ class SphereMap {
     const RefineOptions options{
         .until_vertices = source_.mesh.vertex_count(),
         .pinned = pinned_,
-        .growth = 3,
-        .optimizer = {.max_iterations = 20, .relative_decrease = 1e-3, .barrier = kBarrier}};
-    if (Status s = refine_on_sphere(level_, source_.mesh.V, exact_, options, X_, hint_); !s)
+        .growth = 1.4,
+        .optimizer = {.max_iterations = 10, .relative_decrease = 2e-3, .barrier = kBarrier}};
+    if (Status s = refine_on_sphere(level_, source_.mesh.V, lift_, options, X_, hint_); !s)
       return s;
-    relax_worst(level_, source_.mesh.V, exact_, pinned_, X_, hint_);
-    descend(exact_, false, options_.fine_iterations);
+    relax_worst(level_, source_.mesh.V, lift_, pinned_, X_, hint_);
+    descend(options_.fine_iterations);
     return {};
+  }
+
+  /// Lets the target's vertices move under the same energy of the inverse map, and then the
+  /// source's again: each side only sees what happens at its own vertices.
+  void settle() {
+    const TriangleMesh& b = target_.mesh;
+    std::vector<int> pinned;
+    for (const Landmark& l : landmarks_)
+      if (l.pinned) pinned.push_back(l.target_vertex);
+    const MeshLift to_source(source_.mesh, X_);
+    std::vector<int> hint(at(b.vertex_count()), 0);
+    relax_worst(Refinement(full_level(b)), b.V, to_source, pinned, Y_, hint);
+    SphereProblem problem = make_sphere_problem(b.F, b.V, pinned);
+    for (int f = 0; f < b.face_count(); ++f) {
+      const Vector3d x0 = Y_.row(b.F(f, 0)), x1 = Y_.row(b.F(f, 1)), x2 = Y_.row(b.F(f, 2));
+      problem.reference_orientation[f] = x0.dot((x1 - x0).cross(x2 - x0));
+    }
+    optimize_on_sphere(problem,
+                       to_source,
+                       {.max_iterations = options_.fine_iterations,
+                        .relative_decrease = 1e-3,
+                        .barrier = kBarrier},
+                       Y_,
+                       hint);
+    relax_worst(level_, source_.mesh.V, lift_, pinned_, X_, hint_);
+    descend(options_.fine_iterations);
   }
 
   /// The common subdivision; vertices in special position are moved by a billionth of their edges.
   Result<SurfaceMap> overlay() {
-    MatrixX3d Y = target_.X;
+    MatrixX3d& Y = Y_;
     constexpr int kTries = 100;
     Result<SurfaceMap> map = fail(ErrorCode::kInternal, "overlay: not tried");
     for (int i = 0; i < kTries; ++i) {
@@ -126,17 +155,15 @@ class SphereMap {
     return pinned_.size() < before;
   }
 
-  void descend(const MeshLift& lift, bool logarithmic, int iterations) {
+  void descend(int iterations) {
     SphereProblem problem = make_sphere_problem(level_.compact_faces(), source_.mesh.V, pinned_);
     hold_against_target(problem);
-    optimize_on_sphere(problem,
-                       lift,
-                       {.max_iterations = iterations,
-                        .relative_decrease = 1e-4,
-                        .logarithmic = logarithmic,
-                        .barrier = kBarrier},
-                       X_,
-                       hint_);
+    optimize_on_sphere(
+        problem,
+        lift_,
+        {.max_iterations = iterations, .relative_decrease = 2e-4, .barrier = kBarrier},
+        X_,
+        hint_);
   }
 
   /// A face that lies where the target is packed densely on the sphere may be as small as that.
@@ -146,10 +173,9 @@ class SphereMap {
       double density = 0;
       for (int k = 0; k < 3; ++k) {
         const int v = problem.F(f, k);
-        exact_.point(X_.row(v).transpose(), hint_[at(v)]);
+        lift_.point(X_.row(v).transpose(), hint_[at(v)]);
         const int g = hint_[at(v)];
-        const Vector3d x0 = target_.X.row(b.F(g, 0)), x1 = target_.X.row(b.F(g, 1)),
-                       x2 = target_.X.row(b.F(g, 2));
+        const Vector3d x0 = Y_.row(b.F(g, 0)), x1 = Y_.row(b.F(g, 1)), x2 = Y_.row(b.F(g, 2));
         const Vector3d y0 = b.position(b.F(g, 0)), y1 = b.position(b.F(g, 1)),
                        y2 = b.position(b.F(g, 2));
         density += std::log(x0.dot((x1 - x0).cross(x2 - x0)) /
@@ -164,7 +190,8 @@ class SphereMap {
   const Shape& target_;
   const MapOptions& options_;
   Refinement level_;
-  MeshLift exact_, smooth_;
+  MatrixX3d Y_;  ///< the target's embedding
+  MeshLift lift_;
   MatrixX3d X_;
   std::vector<int> hint_;
   std::vector<bool> fixed_;
@@ -183,6 +210,7 @@ Result<MapResult> optimize_map(const Shape& source,
   if (Status s = sphere.start(initial); !s) return tl::unexpected(s.error());
   sphere.optimize_coarse();
   if (Status s = sphere.refine(); !s) return tl::unexpected(s.error());
+  sphere.settle();
   auto map = sphere.overlay();
   if (!map) return tl::unexpected(map.error());
   MapResult result{std::move(*map), {}, initial.distortion};

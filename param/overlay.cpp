@@ -99,7 +99,7 @@ class Walker {
 
  private:
   void locate_vertices() {
-    const MeshLift lift(b_.mesh, b_.X, 0);
+    const MeshLift lift(b_.mesh, b_.X);
     walks_.face.assign(at(a_.mesh.vertex_count()), -1);
     int guess = 0;
     for (int v = 0; v < a_.mesh.vertex_count(); ++v) {
@@ -224,7 +224,7 @@ class Builder {
   };
 
   void add_vertex_nodes() {
-    const MeshLift in_a(a_.mesh, a_.X, 0), in_b(b_.mesh, b_.X, 0);
+    const MeshLift in_a(a_.mesh, a_.X), in_b(b_.mesh, b_.X);
     for (int v = 0; v < a_.mesh.vertex_count(); ++v) {
       int face = wa_.face[at(v)];
       map_.point_of_source_vertex.push_back(map_.point_count());

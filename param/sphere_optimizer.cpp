@@ -9,12 +9,16 @@
 
 #include <tbb/parallel_for.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
+#include <span>
 
 namespace crosspatch {
 namespace {
@@ -46,38 +50,89 @@ Eigen::Vector4d vec(const Eigen::Matrix2d& m) {
   return {m(0, 0), m(1, 0), m(0, 1), m(1, 1)};
 }
 
-/// Value, gradient and positive semidefinite Hessian of |J|^2 + |J^-1|^2 as functions of the
-/// entries of J (column by column).
+/// Value, gradient and positive semidefinite Hessian of a distortion as functions of the entries of
+/// J (column by column).
 struct IsotropicHessian {
   double energy;
   Eigen::Vector4d g;
   Eigen::Matrix4d H;
 };
 
+/// First and second derivatives in the singular values, and the eigenvalues (d1 -+ d2) / (s1 -+ s2)
+/// in closed form.
+struct SingularDerivatives {
+  double energy, d1, d2, d11, d22, d12, flip, twist;
+};
+
+SingularDerivatives symmetric_dirichlet_derivatives(double s1, double s2) {
+  const double i1 = 1 / (s1 * s1), i2 = 1 / (s2 * s2), cube = s1 * s2 * s1 * s2 * s1 * s2;
+  return {s1 * s1 + s2 * s2 + i1 + i2,
+          2 * s1 - 2 * i1 / s1,
+          2 * s2 - 2 * i2 / s2,
+          2 + 6 * i1 * i1,
+          2 + 6 * i2 * i2,
+          0,
+          2 + 2 * (s1 * s1 + s1 * s2 + s2 * s2) / cube,
+          2 - 2 * (s1 * s1 - s1 * s2 + s2 * s2) / cube};
+}
+
+SingularDerivatives both_ways_derivatives(double s1, double s2) {
+  const SingularDerivatives q = symmetric_dirichlet_derivatives(s1, s2);
+  const double p = s1 * s2;
+  return {(1 + p) * q.energy / 2,
+          (s2 * q.energy + (1 + p) * q.d1) / 2,
+          (s1 * q.energy + (1 + p) * q.d2) / 2,
+          (2 * s2 * q.d1 + (1 + p) * q.d11) / 2,
+          (2 * s1 * q.d2 + (1 + p) * q.d22) / 2,
+          (q.energy + s1 * q.d1 + s2 * q.d2) / 2,
+          ((1 + p) * q.flip - q.energy) / 2,
+          ((1 + p) * q.twist + q.energy) / 2};
+}
+
+constexpr double kAreaWeight = 1.0 / 10;  ///< of log(s1 s2)^2 in kNearlyConformal
+
+SingularDerivatives nearly_conformal_derivatives(double s1, double s2) {
+  const double p = s1 * s2, log = std::log(p), w = 2 * kAreaWeight;
+  return {s1 / s2 + s2 / s1 + kAreaWeight * log * log,
+          1 / s2 - s2 / (s1 * s1) + w * log / s1,
+          1 / s1 - s1 / (s2 * s2) + w * log / s2,
+          2 * s2 / (s1 * s1 * s1) + w * (1 - log) / (s1 * s1),
+          2 * s1 / (s2 * s2 * s2) + w * (1 - log) / (s2 * s2),
+          -1 / (s1 * s1) - 1 / (s2 * s2) + w / p,
+          (1 - w * log) / p + (s1 * s1 + p + s2 * s2) / (p * p),
+          (1 + w * log) / p - (s1 * s1 - p + s2 * s2) / (p * p)};
+}
+
 /// Smith, de Goes & Kim 2019, "Analytic eigensystems for isotropic distortion energies": with J = U
-/// diag(s) V^T the Hessian has the eigenmatrices u_i v_i^T, (u_1 v_2^T + u_2 v_1^T) / sqrt(2) and
-/// (u_2 v_1^T - u_1 v_2^T) / sqrt(2); only the last one (a rotation) can have a negative
-/// eigenvalue, which is replaced by zero.
-IsotropicHessian isotropic_hessian(const Eigen::Matrix2d& J) {
+/// diag(s) V^T the Hessian acts on the span of u_i v_i^T as the Hessian in s, and has the
+/// eigenmatrices (u_1 v_2^T + u_2 v_1^T) / sqrt(2) and (u_2 v_1^T - u_1 v_2^T) / sqrt(2). Negative
+/// eigenvalues are replaced by zero.
+IsotropicHessian isotropic_hessian(const Eigen::Matrix2d& J, Distortion distortion) {
   const Eigen::JacobiSVD<Eigen::Matrix2d> svd(J, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::Matrix2d &U = svd.matrixU(), &V = svd.matrixV();
-  const double s1 = svd.singularValues()[0], s2 = std::max(svd.singularValues()[1], 1e-150);
-  const auto square = [](double x) { return x * x; };
-  const double i1 = square(1 / s1), i2 = square(1 / s2);
-  const double cube = s1 * s2 * s1 * s2 * s1 * s2;
-  const Eigen::Vector4d d1 = vec(U.col(0) * V.col(0).transpose()),
-                        d2 = vec(U.col(1) * V.col(1).transpose());
+  constexpr double kTiny = 1e-150;
+  const double s1 = std::max(svd.singularValues()[0], kTiny),
+               s2 = std::max(svd.singularValues()[1], kTiny);
+  const SingularDerivatives d = distortion == Distortion::kBothWays ? both_ways_derivatives(s1, s2)
+                                : distortion == Distortion::kSymmetricDirichlet
+                                    ? symmetric_dirichlet_derivatives(s1, s2)
+                                    : nearly_conformal_derivatives(s1, s2);
+  Eigen::Matrix<double, 4, 2> D;
+  D << vec(U.col(0) * V.col(0).transpose()), vec(U.col(1) * V.col(1).transpose());
   const Eigen::Vector4d a = vec(U.col(0) * V.col(1).transpose()),
                         b = vec(U.col(1) * V.col(0).transpose());
   const Eigen::Vector4d flip = (a + b) / std::sqrt(2.0), twist = (b - a) / std::sqrt(2.0);
-  const double flip_value = 2 + 2 * (s1 * s1 + s1 * s2 + s2 * s2) / cube;
-  const double twist_value = std::max(0.0, 2 - 2 * (s1 * s1 - s1 * s2 + s2 * s2) / cube);
-  IsotropicHessian r;
-  r.energy = s1 * s1 + s2 * s2 + i1 + i2;
-  r.g = (2 * s1 - 2 * i1 / s1) * d1 + (2 * s2 - 2 * i2 / s2) * d2;
-  r.H = (2 + 6 * i1 * i1) * d1 * d1.transpose() + (2 + 6 * i2 * i2) * d2 * d2.transpose() +
-        flip_value * flip * flip.transpose() + twist_value * twist * twist.transpose();
-  return r;
+  Eigen::Matrix2d S;
+  S << d.d11, d.d12, d.d12, d.d22;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen;
+  eigen.computeDirect(S);
+  const Eigen::Matrix2d positive = eigen.eigenvectors() *
+                                   eigen.eigenvalues().cwiseMax(0).asDiagonal() *
+                                   eigen.eigenvectors().transpose();
+  return {d.energy,
+          D * Vector2d(d.d1, d.d2),
+          D * positive * D.transpose() + std::max(0.0, d.flip) * flip * flip.transpose() +
+              std::max(0.0, d.twist) * twist * twist.transpose()};
 }
 
 /// Hessian and gradient of one face in the six tangent coordinates of its corners.
@@ -95,22 +150,34 @@ class Optimizer {
             std::vector<int>& hint)
       : problem_(problem), lift_(lift), options_(options), X_(X), hint_(hint) {
     Y_.resize(X.rows(), 3);
+    reference_ = problem.reference_orientation;
     total_area_ = problem.rest_area.sum();
     build_pattern();
   }
 
   SphereOptimizerReport run() {
     SphereOptimizerReport report;
+    if (options_.distortion == Distortion::kNearlyConformal) refer_to_chords();
     double energy = evaluate(X_, hint_, Y_);
     report.energy_before = energy;
+    // Common steps move whole limbs; where kinks of the lift or squeezed faces stop them, single
+    // vertices still get on.
+    int failures = 0;
+    constexpr int kMostFailures = 2, kSweeps = 3;
     for (; report.iterations < options_.max_iterations; ++report.iterations) {
-      assemble();
-      if (!solve()) break;
-      const double lower = line_search(energy);
-      if (!(lower < energy)) break;
-      const double gain = energy - lower;
-      energy = lower;
-      if (gain < options_.relative_decrease * std::abs(energy)) {
+      if (options_.distortion == Distortion::kNearlyConformal) {
+        refer_to_chords();
+        energy = evaluate(X_, hint_, Y_);
+      }
+      const double before = energy;
+      if (failures < kMostFailures) {
+        assemble();
+        const double lower = solve() ? line_search(energy) : energy;
+        failures = lower < energy ? 0 : failures + 1;
+      }
+      for (int i = 0; i < kSweeps; ++i) sweep();
+      energy = evaluate(X_, hint_, Y_);
+      if (before - energy < options_.relative_decrease * std::abs(before)) {
         ++report.iterations;
         break;
       }
@@ -124,6 +191,13 @@ class Optimizer {
     return M.row(problem_.F(f, k)).transpose();
   }
 
+  void refer_to_chords() {
+    for (int f = 0; f < problem_.F.rows(); ++f) {
+      const Vector3d x = corner(X_, f, 0);
+      reference_[f] = (corner(X_, f, 1) - x).cross(corner(X_, f, 2) - x).norm();
+    }
+  }
+
   /// Mean energy per area; infinite if a face is turned over on the sphere. Updates hints and
   /// lifted points.
   double evaluate(const MatrixX3d& X, std::vector<int>& hint, MatrixX3d& Y) const {
@@ -135,17 +209,84 @@ class Optimizer {
     });
     Eigen::VectorXd energy(faces);
     tbb::parallel_for(0, faces, [&](int f) {
-      double e = symmetric_dirichlet(
-          problem_.rest_inverse[at(f)], corner(Y, f, 0), corner(Y, f, 1), corner(Y, f, 2));
-      if (options_.logarithmic) e = std::log(e);
-      e += options_.barrier * problem_.reference_orientation[f] /
-           orientation(corner(X, f, 0), corner(X, f, 1), corner(X, f, 2));
-      energy[f] = problem_.rest_area[f] * e;
+      energy[f] = face_energy(f,
+                              {corner(X, f, 0), corner(X, f, 1), corner(X, f, 2)},
+                              {corner(Y, f, 0), corner(Y, f, 1), corner(Y, f, 2)});
     });
     return energy.sum() / total_area_;
   }
 
-  FaceSystem face_system(int f) const {
+  /// Energy of one face, weighted, with its corners at x on the sphere and y on the surface.
+  [[nodiscard]] double face_energy(int f,
+                                   const std::array<Vector3d, 3>& x,
+                                   const std::array<Vector3d, 3>& y) const {
+    const double det = orientation(x[0], x[1], x[2]);
+    if (!(det > 0)) return kInfinity;
+    const double e =
+        distortion(options_.distortion, problem_.rest_inverse[at(f)], y[0], y[1], y[2]);
+    return problem_.rest_area[f] * (e + options_.barrier * reference_[f] / det);
+  }
+
+  /// One Newton step with a line search for each free vertex in turn, the others held.
+  void sweep() {
+    for (int v = 0; v < X_.rows(); ++v)
+      if (unknown_[at(v)] >= 0) step_alone(v);
+  }
+
+  void step_alone(int v) {
+    const Vector3d x = X_.row(v).transpose();
+    const Matrix32 basis = tangent_basis(x);
+    basis_[at(v)] = basis;
+    tangent_[at(v)] = lift_.derivative(x, hint_[at(v)]) * basis;
+    Eigen::Matrix2d H = Eigen::Matrix2d::Zero();
+    Vector2d g = Vector2d::Zero();
+    for (int f : faces_of(v)) {
+      const int k = corner_of(f, v);
+      const FaceSystem s = face_system(f, 1 << k);
+      H += s.H.block<2, 2>(2 * k, 2 * k);
+      g += s.g.segment<2>(2 * k);
+    }
+    const Vector2d step = -H.ldlt().solve(g);
+    if (!step.allFinite()) return;
+    const double energy = star_energy(v, x, Y_.row(v).transpose());
+    constexpr int kHalvings = 5;
+    double t = 1;
+    for (int i = 0; i < kHalvings; ++i, t /= 2) {
+      const Vector3d moved = (x + t * basis * step).normalized();
+      int face = hint_[at(v)];
+      const Vector3d y = lift_.point(moved, face);
+      if (!(star_energy(v, moved, y) < energy)) continue;
+      X_.row(v) = moved.transpose();
+      Y_.row(v) = y.transpose();
+      hint_[at(v)] = face;
+      return;
+    }
+  }
+
+  [[nodiscard]] double star_energy(int v, const Vector3d& x, const Vector3d& y) const {
+    double sum = 0;
+    for (int f : faces_of(v)) {
+      std::array<Vector3d, 3> xs, ys;
+      for (int k = 0; k < 3; ++k) {
+        const bool here = problem_.F(f, k) == v;
+        xs[at(k)] = here ? x : corner(X_, f, k);
+        ys[at(k)] = here ? y : corner(Y_, f, k);
+      }
+      sum += face_energy(f, xs, ys);
+    }
+    return sum;
+  }
+
+  [[nodiscard]] std::span<const int> faces_of(int v) const {
+    return {faces_.data() + faces_begin_[at(v)], faces_.data() + faces_begin_[at(v) + 1]};
+  }
+
+  [[nodiscard]] int corner_of(int f, int v) const {
+    return problem_.F(f, 0) == v ? 0 : problem_.F(f, 1) == v ? 1 : 2;
+  }
+
+  /// `corners`: bits of the corners whose rows are wanted.
+  FaceSystem face_system(int f, int corners = 7) const {
     const Vector3d y0 = corner(Y_, f, 0), u = corner(Y_, f, 1) - y0, v = corner(Y_, f, 2) - y0;
     const Vector3d normal = u.cross(v).normalized();
     Eigen::Matrix<double, 2, 3> P;
@@ -155,8 +296,9 @@ class Optimizer {
     E << P * u, P * v;
     const Eigen::Matrix2d& D = problem_.rest_inverse[at(f)];
     const Eigen::Matrix2d J = E * D;
-    Eigen::Matrix<double, 4, 6> G;
+    Eigen::Matrix<double, 4, 6> G = Eigen::Matrix<double, 4, 6>::Zero();
     for (int k = 0; k < 3; ++k) {
+      if ((corners >> k & 1) == 0) continue;
       const Eigen::Matrix2d M = P * tangent_[at(problem_.F(f, k))];
       // How the edge matrix E follows corner k.
       const Eigen::RowVector2d s = k == 0   ? Eigen::RowVector2d(-1, -1)
@@ -165,9 +307,8 @@ class Optimizer {
       const Eigen::RowVector2d sd = s * D;
       for (int j = 0; j < 2; ++j) G.col(2 * k + j) = vec(M.col(j) * sd);
     }
-    const IsotropicHessian e = isotropic_hessian(J);
-    const double weight =
-        problem_.rest_area[f] / total_area_ / (options_.logarithmic ? e.energy : 1.0);
+    const IsotropicHessian e = isotropic_hessian(J, options_.distortion);
+    const double weight = problem_.rest_area[f] / total_area_;
     FaceSystem s{weight * G.transpose() * e.H * G, weight * G.transpose() * e.g};
     add_barrier(f, s);
     return s;
@@ -177,8 +318,7 @@ class Optimizer {
   void add_barrier(int f, FaceSystem& s) const {
     const Vector3d x[3] = {corner(X_, f, 0), corner(X_, f, 1), corner(X_, f, 2)};
     const double det = orientation(x[0], x[1], x[2]);
-    const double b = problem_.rest_area[f] / total_area_ * options_.barrier *
-                     problem_.reference_orientation[f] / det;
+    const double b = problem_.rest_area[f] / total_area_ * options_.barrier * reference_[f] / det;
     Vector6 ddet;
     for (int k = 0; k < 3; ++k)
       ddet.segment<2>(2 * k) =
@@ -195,6 +335,13 @@ class Optimizer {
     active_.assign(at(vertices), false);
     for (int f = 0; f < problem_.F.rows(); ++f)
       for (int k = 0; k < 3; ++k) active_[at(problem_.F(f, k))] = true;
+    faces_begin_.assign(at(vertices) + 1, 0);
+    for (int v : problem_.F.reshaped()) ++faces_begin_[at(v) + 1];
+    std::partial_sum(faces_begin_.begin(), faces_begin_.end(), faces_begin_.begin());
+    faces_.resize(at(3 * static_cast<int>(problem_.F.rows())));
+    std::vector<int> fill(faces_begin_.begin(), faces_begin_.end() - 1);
+    for (int f = 0; f < problem_.F.rows(); ++f)
+      for (int k = 0; k < 3; ++k) faces_[at(fill[at(problem_.F(f, k))]++)] = f;
     unknown_.assign(at(vertices), -1);
     int n = 0;
     for (int v = 0; v < vertices; ++v)
@@ -266,20 +413,44 @@ class Optimizer {
     return step_.allFinite();
   }
 
-  /// Takes the longest of the steps 1, 1/2, 1/4, ... that turns no face over and lowers the energy.
-  /// Returns the new energy, or the old one if no step does.
-  double line_search(double energy) {
-    MatrixX3d X(X_.rows(), 3), Y = Y_;
-    constexpr int kHalvings = 20;
-    double t = 1;
-    for (int i = 0; i < kHalvings; ++i, t /= 2) {
-      X = X_;
+  /// The state after `t` times the step. Vertices of faces that would lose most of their
+  /// orientation go a smaller part of the way: a few squeezed faces must not stop everybody.
+  [[nodiscard]] MatrixX3d advance(double t) const {
+    constexpr int kRounds = 8;
+    constexpr double kKeep = 0.1;
+    MatrixX3d X = X_;
+    std::vector<double> part(at(static_cast<int>(X_.rows())), t);
+    for (int round = 0; round < kRounds; ++round) {
       for (int v = 0; v < X_.rows(); ++v) {
         const int u = unknown_[at(v)];
         if (u < 0) continue;
         const Vector3d d = basis_[at(v)] * step_.segment<2>(u);
-        X.row(v) = (X_.row(v).transpose() + t * d).normalized().transpose();
+        X.row(v) = (X_.row(v).transpose() + part[at(v)] * d).normalized().transpose();
       }
+      std::vector<bool> squeezed(part.size(), false);
+      bool any = false;
+      for (int f = 0; f < problem_.F.rows(); ++f) {
+        const double before = orientation(corner(X_, f, 0), corner(X_, f, 1), corner(X_, f, 2));
+        if (orientation(corner(X, f, 0), corner(X, f, 1), corner(X, f, 2)) > kKeep * before)
+          continue;
+        any = true;
+        for (int k = 0; k < 3; ++k) squeezed[at(problem_.F(f, k))] = true;
+      }
+      if (!any) break;
+      for (size_t v = 0; v < part.size(); ++v)
+        if (squeezed[v]) part[v] /= 2;
+    }
+    return X;
+  }
+
+  /// Takes the longest of the steps 1, 1/2, 1/4, ... that turns no face over and lowers the energy.
+  /// Returns the new energy, or the old one if no step does.
+  double line_search(double energy) {
+    MatrixX3d Y = Y_;
+    constexpr int kHalvings = 12;
+    double t = 1;
+    for (int i = 0; i < kHalvings; ++i, t /= 2) {
+      const MatrixX3d X = advance(t);
       std::vector<int> hint = hint_;
       const double e = evaluate(X, hint, Y);
       if (e < energy) {
@@ -298,8 +469,10 @@ class Optimizer {
   MatrixX3d& X_;
   std::vector<int>& hint_;
   MatrixX3d Y_;
+  Eigen::VectorXd reference_;  ///< of the barrier
   double total_area_ = 1;
   std::vector<bool> active_;
+  std::vector<int> faces_begin_, faces_;  ///< faces around each vertex
   std::vector<int> unknown_;
   std::vector<Matrix32> basis_, tangent_;
   std::vector<FaceSystem> systems_;
@@ -335,15 +508,21 @@ SphereProblem make_sphere_problem(MatrixX3i F, const MatrixX3d& V, const std::ve
   return problem;
 }
 
-double symmetric_dirichlet(const Eigen::Matrix2d& D,
-                           const Vector3d& y0,
-                           const Vector3d& y1,
-                           const Vector3d& y2) {
+double distortion(Distortion distortion,
+                  const Eigen::Matrix2d& D,
+                  const Vector3d& y0,
+                  const Vector3d& y1,
+                  const Vector3d& y2) {
   Matrix32 E;
   E << y1 - y0, y2 - y0;
   const Eigen::Matrix2d G = D.transpose() * (E.transpose() * E) * D;
   const double det = G.determinant();
-  return det > 0 ? G.trace() * (1 + 1 / det) : kInfinity;
+  if (!(det > 0)) return kInfinity;
+  if (distortion == Distortion::kSymmetricDirichlet) return G.trace() * (1 + 1 / det);
+  if (distortion == Distortion::kBothWays)
+    return G.trace() * (1 + 1 / det) * (1 + std::sqrt(det)) / 2;
+  const double log = std::log(det) / 2;
+  return G.trace() / std::sqrt(det) + kAreaWeight * log * log;
 }
 
 SphereOptimizerReport optimize_on_sphere(const SphereProblem& problem,

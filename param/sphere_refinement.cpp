@@ -47,9 +47,10 @@ class Placer {
   Placer(const Refinement& refinement,
          const MatrixX3d& V,
          const Lift& lift,
+         Distortion distortion,
          MatrixX3d& X,
          std::vector<int>& hint)
-      : refinement_(refinement), V_(V), lift_(lift), X_(X), hint_(hint) {}
+      : refinement_(refinement), V_(V), lift_(lift), distortion_(distortion), X_(X), hint_(hint) {}
 
   /// Puts `v` where its faces have the least energy. `near` is the vertex it was just split from,
   /// or v itself to move it from a valid place. False if no place is left.
@@ -116,7 +117,7 @@ class Placer {
       if (!(x.dot((p - x).cross(q - x)) > 0)) return std::numeric_limits<double>::infinity();
       int fp = hint_[at(ring_[i].first)], fq = hint_[at(ring_[i].second)];
       sum += area_[static_cast<int>(i)] *
-             symmetric_dirichlet(rest_[i], y, lift_.point(p, fp), lift_.point(q, fq));
+             distortion(distortion_, rest_[i], y, lift_.point(p, fp), lift_.point(q, fq));
     }
     return sum;
   }
@@ -124,6 +125,7 @@ class Placer {
   const Refinement& refinement_;
   const MatrixX3d& V_;
   const Lift& lift_;
+  Distortion distortion_;
   MatrixX3d& X_;
   std::vector<int>& hint_;
   std::vector<std::pair<int, int>> ring_;
@@ -142,7 +144,7 @@ std::vector<int> vertices_above(const SphereProblem& problem,
     Vector3d y[3];
     for (int k = 0; k < 3; ++k)
       y[k] = lift.point(X.row(problem.F(f, k)).transpose(), hint[at(problem.F(f, k))]);
-    if (symmetric_dirichlet(problem.rest_inverse[at(f)], y[0], y[1], y[2]) > bound)
+    if (distortion(Distortion::kBothWays, problem.rest_inverse[at(f)], y[0], y[1], y[2]) > bound)
       for (int k = 0; k < 3; ++k) vertices.push_back(problem.F(f, k));
   }
   std::sort(vertices.begin(), vertices.end());
@@ -183,7 +185,7 @@ void relax_worst(const Refinement& level,
   constexpr int kSweeps = 10;
   constexpr double kBound = 40;  // a stretch beyond six in one direction
   const SphereProblem problem = make_sphere_problem(level.compact_faces(), V, pinned);
-  Placer placer(level, V, lift, X, hint);
+  Placer placer(level, V, lift, Distortion::kBothWays, X, hint);
   for (int sweep = 0; sweep < kSweeps; ++sweep)
     for (int v : vertices_above(problem, lift, kBound, X, hint))
       if (!problem.fixed[at(v)]) placer.place(v, v);
@@ -195,7 +197,7 @@ Status refine_on_sphere(Refinement& refinement,
                         const RefineOptions& options,
                         MatrixX3d& X,
                         std::vector<int>& hint) {
-  Placer placer(refinement, V, lift, X, hint);
+  Placer placer(refinement, V, lift, options.optimizer.distortion, X, hint);
   int optimised_at = refinement.vertex_count();
   while (!refinement.done() && refinement.vertex_count() < options.until_vertices) {
     const int v = refinement.split();
@@ -222,11 +224,12 @@ Result<MatrixX3d> embed_in_sphere(const TriangleMesh& mesh, const ProgressiveMes
   MatrixX3d X = MatrixX3d::Zero(mesh.vertex_count(), 3);
   if (Status s = place_tetrahedron(refinement, X); !s) return tl::unexpected(s.error());
   std::vector<int> hint(at(mesh.vertex_count()), 0);
-  const RefineOptions options{
-      .until_vertices = mesh.vertex_count(),
-      .growth = 1.5,
-      .optimizer = {
-          .max_iterations = 100, .relative_decrease = 1e-3, .logarithmic = false, .barrier = 0.1}};
+  const RefineOptions options{.until_vertices = mesh.vertex_count(),
+                              .growth = 1.5,
+                              .optimizer = {.distortion = Distortion::kNearlyConformal,
+                                            .max_iterations = 60,
+                                            .relative_decrease = 1e-4,
+                                            .barrier = 0.02}};
   if (Status s = refine_on_sphere(refinement, mesh.V, SphereLift(), options, X, hint); !s)
     return tl::unexpected(s.error());
   return X;
