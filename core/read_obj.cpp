@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "core/index.hpp"
 #include "core/soup_formats.hpp"
 #include "core/text_scanner.hpp"
 
@@ -140,8 +141,7 @@ class ObjParser {
       if (corner[c] >= count)
         return fail(ErrorCode::kBadInput,
                     fmt::format("{} index {}: the file has {}", what, corner[c] + 1, count));
-      add(corner[c] < 0 ? Vector3d(kUnset, kUnset, kUnset)
-                        : Vector3d(&list[static_cast<std::size_t>(3 * corner[c])]));
+      add(corner[c] < 0 ? Vector3d(kUnset, kUnset, kUnset) : Vector3d(&list[3 * idx(corner[c])]));
     }
     return {};
   }
@@ -177,7 +177,7 @@ class ObjParser {
     if (colors_.empty()) return;
     colors_.resize(v_.size(), 1.0);
     for (const int v : soup_.corner_vertex) {
-      const double* c = &colors_[static_cast<std::size_t>(3 * v)];
+      const double* c = &colors_[3 * idx(v)];
       soup_.corner_colors.push_back(
           {linear_from_srgb(c[0]), linear_from_srgb(c[1]), linear_from_srgb(c[2]), 1});
     }

@@ -83,10 +83,10 @@ class Checker {
   }
 
   static const json& member(const json& object, const char* key) {
-    static const json kNothing;
-    if (!object.is_object()) return kNothing;
+    static const json nothing;
+    if (!object.is_object()) return nothing;
     const auto it = object.find(key);
-    return it == object.end() ? kNothing : *it;
+    return it == object.end() ? nothing : *it;
   }
 
   [[nodiscard]] std::size_t size_of(const char* section) const {

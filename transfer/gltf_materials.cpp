@@ -19,7 +19,7 @@ Vector2d pair(const tinygltf::Value& object, const char* key, const Vector2d& fa
     return fallback;
   Vector2d out = fallback;
   for (int k = 0; k < 2; ++k) {
-    const tinygltf::Value& entry = object.Get(key).Get(static_cast<std::size_t>(k));
+    const tinygltf::Value& entry = object.Get(key).Get(k);
     if (entry.IsNumber() && std::isfinite(entry.GetNumberAsDouble()))
       out[k] = entry.GetNumberAsDouble();
   }
