@@ -38,14 +38,14 @@ std::array<float, 256> make_linear() {
 }  // namespace
 
 float srgb_to_linear(std::uint8_t value) {
-  static const std::array<float, 256> kLinear = make_linear();
-  return kLinear[value];
+  static const std::array<float, 256> linear = make_linear();
+  return linear[value];
 }
 
 std::uint8_t linear_to_srgb(float value) {
-  static const std::array<float, 255> kThresholds = make_thresholds();
-  return static_cast<std::uint8_t>(std::upper_bound(kThresholds.begin(), kThresholds.end(), value) -
-                                   kThresholds.begin());
+  static const std::array<float, 255> thresholds = make_thresholds();
+  return static_cast<std::uint8_t>(std::upper_bound(thresholds.begin(), thresholds.end(), value) -
+                                   thresholds.begin());
 }
 
 Bitmap make_bitmap(int width, int height, const Color& fill) {

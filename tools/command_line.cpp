@@ -169,6 +169,8 @@ void add_render(CLI::App& app, RenderArguments& arguments) {
       ->type_name("FILE");
   command->add_option("--landmarks", arguments.landmarks, "Mark these vertex pairs with balls")
       ->type_name("FILE");
+  command->add_flag(
+      "--lines", arguments.lines, "Both meshes side by side, with lines between their landmarks");
   command
       ->add_option("--field", arguments.field, "Colour MESH by numbers, one a vertex or a triangle")
       ->type_name("FILE");
@@ -267,6 +269,8 @@ tl::expected<Command, CommandLineStop> parse_command_line(int argc, const char* 
     return match;
   }
   if (transfer_command->parsed()) return transfer;
+  if (render.lines && (render.mesh2.empty() || render.landmarks.empty()))
+    return tl::unexpected(CommandLineStop{ExitCode::kUsage, "--lines needs MESH2 and --landmarks"});
   if (!render.map.empty() && render.mesh2.empty())
     return tl::unexpected(CommandLineStop{ExitCode::kUsage, "--map needs MESH2, the map's target"});
   return render;

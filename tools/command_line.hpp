@@ -39,6 +39,7 @@ struct RenderArguments {
   std::string output;                 ///< PNG
   std::string map;                    ///< map file from the first mesh to the second; empty = none
   std::string landmarks;              ///< file of corresponding vertices to mark; empty = none
+  bool lines = false;                 ///< meshes side by side, lines between landmarks
   std::string field;                  ///< file of numbers, one a vertex or a triangle; empty = none
   std::optional<DrawnColors> colors;  ///< unset = kOwn for one mesh, kPosition for two
   std::vector<View> views{View::kFront, View::kRight, View::kBack, View::kTop};

@@ -50,7 +50,7 @@ class SilentStandardError {
 };
 
 /// Error texts of the library may span lines; ours do not.
-std::string first_line(std::string text) {
+std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
 }
 

@@ -192,8 +192,8 @@ Color sample(const Texture& texture, int level, const Eigen::Vector2d& uv) {
 /// Light arriving at a surface with the given normal (x right, y up, z towards the viewer).
 float light(const Vector3d& normal) {
   // Weights add up to 1 where the normal meets the key light, so white stays white there.
-  static const Vector3d kKey = Vector3d(-0.45, 0.55, 0.7).normalized();
-  return static_cast<float>(0.36 + 0.45 * std::max(0.0, normal.dot(kKey)) +
+  static const Vector3d key_light = Vector3d(-0.45, 0.55, 0.7).normalized();
+  return static_cast<float>(0.36 + 0.45 * std::max(0.0, normal.dot(key_light)) +
                             0.28 * std::max(0.0, normal.z()));
 }
 
@@ -215,12 +215,14 @@ Color paint(const Scene& scene, const ProjectedSurface& seen, int f, const Vecto
       color += static_cast<float>(bary[k]) * surface.corner_color[at(3 * f + k)];
   }
   if (!surface.face_texture.empty() && surface.face_texture[at(f)] >= 0) {
-    const Eigen::Vector2d uv = surface.corner_uv.middleRows<3>(3 * f).transpose() * bary;
+    const Eigen::Vector2d uv =
+        surface.corner_uv.middleRows<3>(Eigen::Index{3} * f).transpose() * bary;
     const Texture& texture = scene.textures[at(surface.face_texture[at(f)])];
     color = color.cwiseProduct(sample(texture, seen.level[at(f)], uv));
   }
   if (surface.corner_solid.rows() > 0)
-    color *= solid_checker(surface.corner_solid.middleRows<3>(3 * f).transpose() * bary);
+    color *=
+        solid_checker(surface.corner_solid.middleRows<3>(Eigen::Index{3} * f).transpose() * bary);
   return color;
 }
 
@@ -236,7 +238,8 @@ Color shade_face(const Scene& scene,
   Vector3d normal = ((t.b - t.a).array() * up).matrix().cross(((t.c - t.a).array() * up).matrix());
   const bool outside = normal.z() >= 0;
   if (seen.surface->corner_normal.rows() > 0)
-    normal = axes * (seen.surface->corner_normal.middleRows<3>(3 * f).transpose() * bary);
+    normal =
+        axes * (seen.surface->corner_normal.middleRows<3>(Eigen::Index{3} * f).transpose() * bary);
   const double length = normal.norm();
   if (length > 0) normal /= outside ? length : -length;
   return paint(scene, seen, f, bary) * light(normal) * (outside ? 1.0F : kInnerSide);

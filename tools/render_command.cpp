@@ -28,6 +28,7 @@ struct Drawn {
   PolygonSoup soup;
   Scene scene;  ///< its first surface is the mesh, a face a fan triangle, with the file's vertices
   Frame frame = Frame::Identity();
+  MatrixX3d marks{};  ///< the vertices that landmarks name, in their order
 
   [[nodiscard]] Surface& surface() { return scene.surfaces.front(); }
 };
@@ -35,7 +36,7 @@ struct Drawn {
 Result<Drawn> read_drawn(const std::string& path, DrawnColors colors, char up) {
   Result<PolygonSoup> soup = read_input_soup(path);
   if (!soup) return tl::unexpected(soup.error());
-  Drawn drawn{path, std::move(*soup), {}, Frame::Identity()};
+  Drawn drawn{path, std::move(*soup), {}, Frame::Identity(), {}};
   if (colors == DrawnColors::kOwn) {
     Result<Scene> scene = textured_scene(drawn.soup);
     if (!scene) return tl::unexpected(with_path(path, scene.error()));
@@ -59,8 +60,8 @@ Status apply_map(const std::string& map_path, DrawnColors colors, Drawn& source,
                              static_cast<int>(source.soup.positions.rows()),
                              static_cast<int>(target.surface().F.rows()));
   if (!map) return tl::unexpected(with_path(map_path, map.error()));
-  const MatrixX3d& target_V = target.surface().V;
-  const MatrixX3d places = image_positions(*map, target_V, target.surface().F);
+  const MatrixX3d& target_positions = target.surface().V;
+  const MatrixX3d places = image_positions(*map, target_positions, target.surface().F);
   std::vector<Eigen::Index> mapped;
   for (Eigen::Index i = 0; i < places.rows(); ++i)
     if (places.row(i).allFinite()) mapped.push_back(i);
@@ -68,7 +69,7 @@ Status apply_map(const std::string& map_path, DrawnColors colors, Drawn& source,
     target.frame = source.frame * best_rotation(places(mapped, Eigen::all),
                                                 source.soup.positions(mapped, Eigen::all));
   if (colors != DrawnColors::kOwn)
-    color_by_place(source.surface(), places, target_V, pattern_of(colors));
+    color_by_place(source.surface(), places, target_positions, pattern_of(colors));
   return {};
 }
 
@@ -81,14 +82,16 @@ Status add_landmarks(const std::string& path, std::vector<Drawn>& drawn) {
                                          static_cast<int>(drawn.back().soup.positions.rows()));
   if (!landmarks) return tl::unexpected(with_path(path, landmarks.error()));
   constexpr double kRadius = 0.012;  // of the diagonal: seen in a panel, hides little
-  for (size_t i = 0; i < landmarks->size(); ++i)
-    for (size_t side = 0; side < drawn.size(); ++side) {
-      const FileLandmark& pair = (*landmarks)[i];
-      const MatrixX3d& V = drawn[side].soup.positions;
-      const MatrixX3d point = V.row(side == 0 ? pair.source_vertex : pair.target_vertex);
-      add_points(
-          drawn[side].scene, point, kRadius * diagonal(V), category_color(static_cast<int>(i)));
+  for (size_t side = 0; side < drawn.size(); ++side) {
+    Drawn& mesh = drawn[side];
+    const MatrixX3d& V = mesh.soup.positions;
+    mesh.marks.resize(static_cast<Eigen::Index>(landmarks->size()), 3);
+    for (int i = 0; i < mesh.marks.rows(); ++i) {
+      const FileLandmark& pair = (*landmarks)[static_cast<size_t>(i)];
+      mesh.marks.row(i) = V.row(side == 0 ? pair.source_vertex : pair.target_vertex);
+      add_points(mesh.scene, mesh.marks.row(i), kRadius * diagonal(V), category_color(i));
     }
+  }
   return {};
 }
 
@@ -119,6 +122,15 @@ Status add_field(const std::string& path, Drawn& drawn) {
   return {};
 }
 
+std::string label(const Drawn& mesh, View view) {
+  return fmt::format("{} {}", std::filesystem::path(mesh.path).stem().string(), view_name(view));
+}
+
+/// Columns that make a figure of that many panels about as wide as high.
+int square_columns(size_t panels) {
+  return static_cast<int>(std::ceil(std::sqrt(static_cast<double>(panels))));
+}
+
 /// A row of panels for each of two meshes; one mesh fills a square.
 Bitmap draw_meshes(std::vector<Drawn>& drawn, const RenderArguments& arguments) {
   std::vector<Scene> scenes;
@@ -126,16 +138,37 @@ Bitmap draw_meshes(std::vector<Drawn>& drawn, const RenderArguments& arguments) 
   for (size_t i = 0; i < drawn.size(); ++i) {
     for (const View view : arguments.views)
       panels.push_back(
-          {static_cast<int>(i),
-           view_axes(drawn[i].frame, view),
-           fmt::format(
-               "{} {}", std::filesystem::path(drawn[i].path).stem().string(), view_name(view))});
+          {static_cast<int>(i), view_axes(drawn[i].frame, view), label(drawn[i], view)});
     scenes.push_back(std::move(drawn[i].scene));
   }
-  const int views = static_cast<int>(arguments.views.size());
-  const int columns = drawn.size() == 1 ? static_cast<int>(std::ceil(std::sqrt(views))) : views;
+  const int columns =
+      drawn.size() == 1 ? square_columns(panels.size()) : static_cast<int>(arguments.views.size());
   return draw_figure(
       scenes, panels, {.width = arguments.width, .height = arguments.height, .columns = columns});
+}
+
+/// A panel a view with both meshes side by side and lines between their landmarks.
+Bitmap draw_side_by_side(const std::vector<Drawn>& drawn, const RenderArguments& arguments) {
+  constexpr double kLineRadius = 0.0015;  // of the diagonal: about two pixels in a panel
+  const Drawn &first = drawn.front(), &second = drawn.back();
+  const Eigen::Matrix3d turn = first.frame.transpose() * second.frame;
+  std::vector<Scene> scenes;
+  std::vector<Panel> panels;
+  for (const View view : arguments.views) {
+    const Eigen::Matrix3d axes = view_axes(first.frame, view);
+    PlacedPair pair = place_beside(first.scene, second.scene, turn, axes.row(0).transpose());
+    MatrixX3d ends = second.marks;
+    for (auto end : ends.rowwise()) end = pair.placed(end.transpose()).transpose();
+    add_correspondences(
+        pair.scene, first.marks, ends, kLineRadius * diagonal(first.soup.positions));
+    panels.push_back({static_cast<int>(scenes.size()), axes, label(first, view)});
+    scenes.push_back(std::move(pair.scene));
+  }
+  return draw_figure(scenes,
+                     panels,
+                     {.width = arguments.width,
+                      .height = arguments.height,
+                      .columns = square_columns(panels.size())});
 }
 
 /// Reads the meshes and dresses them as the arguments say.
@@ -181,7 +214,8 @@ Result<ExitCode> run(const RenderArguments& arguments) {
   progress.end(fmt::format("{} meshes, {} triangles", drawn->size(), triangles));
 
   progress.begin("draw");
-  const Bitmap picture = draw_meshes(*drawn, arguments);
+  const Bitmap picture =
+      arguments.lines ? draw_side_by_side(*drawn, arguments) : draw_meshes(*drawn, arguments);
   const auto png = encode_png(picture);
   if (!png) return tl::unexpected(png.error());
   progress.end(fmt::format("{} x {} pixels", picture.width, picture.height));

@@ -60,11 +60,12 @@ ordered_json inputs_json(const RunReport& report) {
 }  // namespace
 
 InputSummary summarize(const std::string& role, const std::string& path, const PolygonSoup& soup) {
+  const std::size_t triangles = fan_triangle_corners(soup).size() / 3;
   return {.role = role,
           .path = path,
           .counts = {{"vertices", static_cast<double>(soup.positions.rows())},
                      {"polygons", soup.polygon_count()},
-                     {"triangles", static_cast<double>(fan_triangle_corners(soup).size() / 3)},
+                     {"triangles", static_cast<double>(triangles)},
                      {"uv_sets", static_cast<double>(soup.uv_sets.size())},
                      {"materials", static_cast<double>(soup.materials.size())},
                      {"images", static_cast<double>(soup.images.size())}},

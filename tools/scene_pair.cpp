@@ -12,6 +12,10 @@ namespace {
 
 using std::size_t;
 
+size_t at(Eigen::Index i) {
+  return static_cast<size_t>(i);
+}
+
 constexpr int kCheckerCells = 16;  // along the target's longest side: cells stay visible in a panel
 
 struct Box {
@@ -78,16 +82,29 @@ void color_by_place(Surface& surface,
     if (!mapped) continue;
     for (int k = 0; k < 3; ++k) {
       const Eigen::RowVector3d offset = places.row(surface.F(f, k)) - box.low;
-      surface.corner_color[static_cast<size_t>(3 * f + k)] =
+      surface.corner_color[at(Eigen::Index{3} * f + k)] =
           position_color(offset.cwiseQuotient(size).transpose());
       if (checker) surface.corner_solid.row(3 * f + k) = kCheckerCells / size.maxCoeff() * offset;
     }
   }
 }
 
-PlacedPair place_beside(const Scene& first, const Scene& second, const Vector3d& right) {
+PlacedPair place_beside(const Scene& first,
+                        Scene second,
+                        const Eigen::Matrix3d& turn,
+                        const Vector3d& right) {
+  for (Surface& surface : second.surfaces) {
+    surface.V = (surface.V * turn.transpose()).eval();
+    if (surface.corner_normal.rows() > 0)
+      surface.corner_normal = (surface.corner_normal * turn.transpose()).eval();
+  }
+  for (Rod& rod : second.rods) {
+    rod.a = (turn * rod.a).eval();
+    rod.b = (turn * rod.b).eval();
+  }
   const Box one = box_of(first), two = box_of(second);
-  PlacedPair pair{first, one.diagonal() / std::max(two.diagonal(), 1e-300), Vector3d::Zero()};
+  const double scale = one.diagonal() / std::max(two.diagonal(), 1e-300);
+  PlacedPair pair{first, scale, turn, Vector3d::Zero()};
   const double gap = 0.08 * one.diagonal();
   pair.shift = one.middle() - pair.scale * two.middle();
   const double second_low = pair.scale * extent(second, right).first + pair.shift.dot(right);

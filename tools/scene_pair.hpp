@@ -27,14 +27,21 @@ void color_by_place(Surface& surface,
                     const MatrixX3d& target_V,
                     PairPattern pattern);
 
-/// Both surfaces in one scene, the second moved along `right` (a unit vector) until it stands clear
-/// of the first and scaled about its own middle to the same diagonal.
+/// Both surfaces in one scene: the second turned, scaled to the diagonal of the first and moved
+/// along `right` (a unit vector) until it stands clear of it.
 struct PlacedPair {
   Scene scene;
   double scale = 1;
-  Vector3d shift = Vector3d::Zero();  ///< a point p of the second is drawn at scale p + shift
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  Vector3d shift = Vector3d::Zero();
+
+  /// Where a point of the second is drawn.
+  [[nodiscard]] Vector3d placed(const Vector3d& p) const { return scale * (turn * p) + shift; }
 };
-PlacedPair place_beside(const Scene& first, const Scene& second, const Vector3d& right);
+PlacedPair place_beside(const Scene& first,
+                        Scene second,
+                        const Eigen::Matrix3d& turn,
+                        const Vector3d& right);
 
 /// A thin line from each row of `first` to the same row of `second` in a colour of its own.
 void add_correspondences(Scene& scene,

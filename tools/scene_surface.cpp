@@ -157,6 +157,7 @@ void color_field(Surface& surface,
     high = range->high;
   }
   std::vector<Color> colors;
+  colors.reserve(at(values.size()));
   for (const double value : values)
     colors.push_back(field_color(high > low ? (value - low) / (high - low) : 0));
   color_vertices(surface, colors);
@@ -164,6 +165,7 @@ void color_field(Surface& surface,
 
 void color_heat(Surface& surface, const Eigen::VectorXd& face_values, const ValueRange& range) {
   std::vector<Color> colors;
+  colors.reserve(at(face_values.size()));
   for (const double value : face_values)
     colors.push_back(heat_color((value - range.low) / (range.high - range.low)));
   color_faces(surface, colors);
@@ -171,6 +173,7 @@ void color_heat(Surface& surface, const Eigen::VectorXd& face_values, const Valu
 
 void color_patches(Surface& surface, const std::vector<int>& face_label) {
   std::vector<Color> colors;
+  colors.reserve(face_label.size());
   for (const int label : face_label)
     colors.push_back(label < 0 ? neutral_color() : category_color(label));
   color_faces(surface, colors);

@@ -40,7 +40,7 @@ std::array<uint32_t, count> prime_roots(double root(double)) {
 using State = std::array<uint32_t, 8>;
 
 void add_block(State& state, const unsigned char* block) {
-  static const std::array<uint32_t, 64> kConstants =
+  static const std::array<uint32_t, 64> constants =
       prime_roots<64>([](double p) { return std::cbrt(p); });
   std::array<uint32_t, 64> w{};
   for (size_t i = 0; i < 16; ++i)
@@ -53,7 +53,7 @@ void add_block(State& state, const unsigned char* block) {
   auto [a, b, c, d, e, f, g, h] = state;
   for (size_t i = 0; i < 64; ++i) {
     const uint32_t t1 = h + (std::rotr(e, 6) ^ std::rotr(e, 11) ^ std::rotr(e, 25)) +
-                        ((e & f) ^ (~e & g)) + kConstants[i] + w[i];
+                        ((e & f) ^ (~e & g)) + constants[i] + w[i];
     const uint32_t t2 =
         (std::rotr(a, 2) ^ std::rotr(a, 13) ^ std::rotr(a, 22)) + ((a & b) ^ (a & c) ^ (b & c));
     h = g;

@@ -75,9 +75,10 @@ TEST(Picture, CorrespondingPlacesLookAlike) {
   color_by_place(first.surfaces[0], places, target.V, PairPattern::kChecker);
   color_by_place(second.surfaces[0], target.V, target.V, PairPattern::kChecker);
   const Panel front = panel(0, "front", "pair");
-  PlacedPair pair = place_beside(first, second, front.axes.row(0).transpose());
-  const MatrixX3d ends =
-      (pair.scale * target.V.middleRows(12, 8)).rowwise() + pair.shift.transpose();
+  PlacedPair pair =
+      place_beside(first, second, Eigen::Matrix3d::Identity(), front.axes.row(0).transpose());
+  MatrixX3d ends = target.V.middleRows(12, 8);
+  for (auto end : ends.rowwise()) end = pair.placed(end.transpose()).transpose();
   add_correspondences(pair.scene, source.V.middleRows(12, 8), ends, 0.01);
   expect_as_stored(draw_figure({pair.scene}, {front}, {.width = 320, .height = 160}), "pair");
 }

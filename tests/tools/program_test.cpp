@@ -46,6 +46,7 @@ TEST_F(Program, WrongUsageEndsWithTwo) {
   expect_error("render mesh.off --output out/a.png --views front,above", 2, "above");
   expect_error("render mesh.off --output out/a.png --texture wood", 2, "wood");
   expect_error("render mesh.off --output out/a.png --map map.txt", 2, "MESH2");
+  expect_error("render mesh.off mesh.off --lines --output out/a.png", 2, "needs MESH2 and --landm");
   const std::string match = "match mesh.off mesh.off --output out/m.csv ";
   expect_error(match + "--method guess", 2, "'guess' is none of default, paper");
   expect_error(match + "--method paper --landmarks pairs.txt", 2, "takes no --landmarks");
@@ -272,6 +273,10 @@ TEST_F(Program, JsonReportHasTheFieldsOfItsSchema) {
           "--json out/render.json")
           .exit_code,
       0);
+  EXPECT_EQ(run("render mesh.off mesh.off --landmarks landmarks.txt --lines --size 64x64 --output "
+                "out/lines.png")
+                .exit_code,
+            0);
   const auto drawn = nlohmann::json::parse(test::read_text(folder / "out/render.json"));
   EXPECT_EQ(drawn["outputs"], nlohmann::json::array({"out/a.png"}));
   EXPECT_EQ(drawn["inputs"].size(), 3u);
