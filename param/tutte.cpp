@@ -9,7 +9,7 @@
 #include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <optional>
 #include <utility>
 
 #include "core/index.hpp"
@@ -109,6 +109,33 @@ std::vector<double> positive_weights(const TriangleMesh& mesh, TutteWeights kind
     });
   }
   return w;
+}
+
+/// Weakens edges where the image is too small, so that the next one gives that part more room:
+/// weights are divided by the stretch of both ends (Yoshizawa, Belyaev & Seidel 2004, "A fast and
+/// simple stretch-minimizing mesh parameterization"; they divide by that of the neighbour, the
+/// other factor keeps symmetry and drops out of each mean).
+void even_out(const TriangleMesh& disc, const MatrixX2d& uv, std::vector<double>& w) {
+  Eigen::VectorXd surface = Eigen::VectorXd::Zero(disc.vertex_count()), image = surface;
+  const Eigen::VectorXd areas = face_areas(disc);
+  for (int f = 0; f < disc.face_count(); ++f) {
+    const Vector2d a = uv.row(disc.F(f, 0)), b = uv.row(disc.F(f, 1)), c = uv.row(disc.F(f, 2));
+    const Vector2d d = b - a, e = c - a;
+    for (int k = 0; k < 3; ++k) {
+      surface[disc.F(f, k)] += areas[f];
+      image[disc.F(f, k)] += std::abs(d.x() * e.y() - d.y() * e.x()) / 2;
+    }
+  }
+  const double scale = image.sum() / surface.sum();
+  // Where the image has collapsed into rounding, its areas are noise: the part that is resolved
+  // grows from round to round.
+  constexpr double kMost = 1e6;
+  const auto stretch = [&](int v) {
+    const double ratio = scale * surface[v] / std::max(image[v], 1e-300);
+    return std::clamp(std::sqrt(ratio), 1 / kMost, kMost);
+  };
+  for (int h = 0; h < disc.halfedge_count(); ++h)
+    w[idx(h)] /= stretch(disc.from(h)) * stretch(disc.to(h));
 }
 
 struct InnerSystem {
@@ -219,12 +246,28 @@ Result<MatrixX2d> tutte_embedding(const TriangleMesh& disc,
   std::string why = "disc: factorization failed";
   for (const TutteWeights kind : {options.weights, TutteWeights::kUniform}) {
     const bool symmetric = kind != TutteWeights::kMeanValue;
-    const std::vector<double> w = positive_weights(disc, kind);
-    const InnerSystem system = inner_system(disc, w, uv, fixed, symmetric);
-    if (system.matrix.rows() > 0 && !solve_inner(system, symmetric, uv)) continue;
-    const std::vector<int> bad = folded_faces(disc, uv);
-    if (bad.empty()) return uv;
-    why = describe_folds(disc, uv, bad);
+    std::vector<double> w = positive_weights(disc, kind);
+    constexpr int kMostRounds = 30, kPatience = 3;
+    size_t fewest = idx(disc.face_count()) + 1;
+    std::optional<MatrixX2d> good;
+    int evened = 0;
+    for (int round = 0, idle = 0; round <= kMostRounds && idle < kPatience; ++round, ++idle) {
+      const InnerSystem system = inner_system(disc, w, uv, fixed, symmetric);
+      if (system.matrix.rows() > 0 && !solve_inner(system, symmetric, uv)) break;
+      const std::vector<int> bad = folded_faces(disc, uv);
+      if (bad.empty()) {
+        good = uv;
+        if (evened++ >= options.evening_rounds) break;
+      } else if (good) {
+        break;
+      } else {
+        why = describe_folds(disc, uv, bad);
+      }
+      if (bad.size() < fewest || good) idle = 0;
+      fewest = std::min(fewest, bad.size());
+      even_out(disc, uv, w);
+    }
+    if (good) return *good;
   }
   return fail(ErrorCode::kNumerical, why);
 }

@@ -15,11 +15,15 @@ enum class TutteWeights {
 
 struct TutteOptions {
   TutteWeights weights = TutteWeights::kSymmetric;
+  /// Rounds that change the weights so as to even out the areas of the image; up to 8 are made
+  /// where the image of a long limb, which shrinks exponentially, falls below rounding.
+  int evening_rounds = 0;
 };
 
 /// Maps a disc onto a convex polygon such that every inner vertex is a weighted mean of its
 /// neighbours (Tutte 1963; Floater 2003). Weights are positive, hence every triangle keeps its
-/// orientation, which is verified exactly; where rounding spoils it, uniform weights are tried.
+/// orientation, which is verified exactly; where rounding spoils it, weights are evened
+/// out, then uniform ones are tried.
 ///
 /// `boundary_loop`: the vertices of the only boundary, surface on the left (as boundary_loops
 /// gives it, any start); `boundary_positions` (#loop x 2): their places, counter-clockwise on a

@@ -89,6 +89,58 @@ TEST(Tutte, SliversAreEmbedded) {
   ASSERT_TRUE(uv) << uv.error().message;
 }
 
+/// The lateral surface of a thin cylinder with a closed end: a limb.
+TriangleMesh limb(int rings, int sides) {
+  MatrixX3d V(rings * sides + 1, 3);
+  for (int i = 0; i < rings; ++i)
+    for (int j = 0; j < sides; ++j) {
+      const double t = 2 * std::numbers::pi * j / sides;
+      V.row(i * sides + j) << std::cos(t), std::sin(t), 2 * std::numbers::pi * i / sides;
+    }
+  V.row(rings * sides) << 0, 0, 2 * std::numbers::pi * rings / sides;
+  std::vector<std::array<int, 3>> faces;
+  for (int i = 0; i < rings; ++i)
+    for (int j = 0; j < sides; ++j) {
+      const int a = i * sides + j, b = i * sides + (j + 1) % sides;
+      if (i + 1 == rings) {
+        faces.push_back({a, b, rings * sides});
+        continue;
+      }
+      faces.push_back({a, b, b + sides});
+      faces.push_back({a, b + sides, a + sides});
+    }
+  MatrixX3i F(static_cast<int>(faces.size()), 3);
+  for (int f = 0; f < F.rows(); ++f) {
+    const auto& face = faces[static_cast<std::size_t>(f)];
+    F.row(f) << face[0], face[1], face[2];
+  }
+  return make_mesh(V, F).value();
+}
+
+TEST(Tutte, LongLimbsAreEmbeddedByEveningOut) {
+  // Rings shrink by about exp(-2 pi / sides) each: 120 of 12 sides end at exp(-60), below rounding.
+  const TriangleMesh mesh = limb(120, 12);
+  const std::vector<int> loop = boundary_loops(mesh)[0];
+  // About a centre whose coordinates have no room for that.
+  const MatrixX2d rim = circle(loop.size()).rowwise() + Eigen::RowVector2d(0.3, 0.2);
+  const auto uv = tutte_embedding(mesh, loop, rim);
+  ASSERT_TRUE(uv) << uv.error().message;
+  EXPECT_TRUE(folded_faces(mesh, *uv).empty());
+}
+
+TEST(Tutte, EveningOutWidensTheSmallestTriangle) {
+  const TriangleMesh mesh = limb(20, 12);
+  const std::vector<int> loop = boundary_loops(mesh)[0];
+  const auto smallest = [&](int rounds) {
+    const MatrixX2d uv =
+        tutte_embedding(mesh, loop, circle(loop.size()), {.evening_rounds = rounds}).value();
+    MatrixX3d flat = MatrixX3d::Zero(uv.rows(), 3);
+    flat.leftCols<2>() = uv;
+    return face_areas(make_mesh(flat, mesh.F).value()).minCoeff();
+  };
+  EXPECT_GT(smallest(2), 100 * smallest(0));
+}
+
 TEST(Tutte, DegenerateTrianglesFallBackToUniformWeights) {
   TriangleMesh mesh = shapes::grid(6);
   mesh.V.row(24) = mesh.V.row(25);
