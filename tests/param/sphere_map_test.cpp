@@ -1,0 +1,236 @@
+// From a surface to its spherical embedding, candidate maps, the optimised map and its exact
+// overlay.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "core/progressive_mesh.hpp"
+#include "param/chain_disc.hpp"
+#include "param/judge.hpp"
+#include "param/make_map.hpp"
+#include "param/overlay.hpp"
+#include "param/sphere_refinement.hpp"
+#include "param/untangle.hpp"
+#include "shapes.hpp"
+
+namespace crosspatch {
+namespace {
+
+/// A closed surface with four limbs of different lengths, over the sphere of `levels`.
+TriangleMesh limbed(int levels) {
+  TriangleMesh mesh = shapes::icosphere(levels);
+  const Vector3d axes[] = {{0, 0, 1}, {1, 0.2, 0}, {-1, 0.4, -0.3}, {0.1, -1, -0.4}};
+  const double lengths[] = {2.0, 1.5, 1.0, 0.7};
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    const Vector3d x = mesh.position(v);
+    double r = 1;
+    for (int i = 0; i < 4; ++i) r += lengths[i] * std::exp(-12 * (1 - x.dot(axes[i].normalized())));
+    mesh.V.row(v) = r * x.transpose();
+  }
+  return normalized(mesh);
+}
+
+/// The vertex farthest along `axis`.
+int extreme(const TriangleMesh& mesh, const Vector3d& axis) {
+  Eigen::Index best = 0;
+  (mesh.V * axis.normalized()).maxCoeff(&best);
+  return static_cast<int>(best);
+}
+
+std::vector<int> limb_tips(const TriangleMesh& mesh) {
+  return {extreme(mesh, {0, 0, 1}),
+          extreme(mesh, {1, 0.2, 0}),
+          extreme(mesh, {-1, 0.4, -0.3}),
+          extreme(mesh, {0.1, -1, -0.4})};
+}
+
+/// The unit sphere's vertices turned by an angle about an axis in general position.
+MatrixX3d turned(const MatrixX3d& X, double angle) {
+  const Eigen::Matrix3d R =
+      Eigen::AngleAxisd(angle, Vector3d(0.3, 0.5, 0.8).normalized()).toRotationMatrix();
+  return X * R.transpose();
+}
+
+TEST(ProgressiveMesh, EveryLevelIsAClosedSphereAndTheLastIsTheMesh) {
+  const TriangleMesh mesh = limbed(3);
+  const std::vector<int> tips = limb_tips(mesh);
+  const auto progressive =
+      make_progressive_mesh(mesh, {.shape_vertices = 200, .protected_vertices = tips});
+  ASSERT_TRUE(progressive) << progressive.error().message;
+  for (int n : {4, 30, 200, 400, mesh.vertex_count()}) {
+    const auto level = mesh_level(mesh, *progressive, n);
+    ASSERT_TRUE(level) << level.error().message;
+    EXPECT_EQ(level->mesh.vertex_count(), n);
+    EXPECT_EQ(euler_characteristic(level->mesh), 2);
+    if (n >= 200)
+      for (int tip : tips)
+        EXPECT_TRUE(std::binary_search(level->vertex.begin(), level->vertex.end(), tip));
+  }
+  Refinement walk(*progressive);
+  while (!walk.done()) walk.split();
+  EXPECT_EQ(walk.compact_faces(), mesh.F);
+}
+
+TEST(SphericalEmbedding, EveryFaceIsPositiveAndTheSphereIsCoveredOnce) {
+  for (const TriangleMesh& mesh :
+       {limbed(3), normalized(shapes::icosphere(2)), normalized(shapes::tetrahedron())}) {
+    const auto progressive = make_progressive_mesh(mesh);
+    ASSERT_TRUE(progressive);
+    const auto X = embed_in_sphere(mesh, *progressive);
+    ASSERT_TRUE(X) << X.error().message;
+    EXPECT_EQ(turned_faces(mesh.F, *X), 0);
+    // Van Oosterom & Strackee: tan(angle / 2) = det / (1 + a.b + b.c + c.a) for unit vectors.
+    double solid_angle = 0;
+    for (int f = 0; f < mesh.face_count(); ++f) {
+      const Vector3d a = X->row(mesh.F(f, 0)), b = X->row(mesh.F(f, 1)), c = X->row(mesh.F(f, 2));
+      solid_angle += 2 * std::atan2(a.dot(b.cross(c)), 1 + a.dot(b) + b.dot(c) + c.dot(a));
+    }
+    EXPECT_NEAR(solid_angle, 4 * std::numbers::pi, 1e-9);  // rounding
+  }
+}
+
+TEST(Untangling, CollapsesTurnedFacesAwayAndSplitsThemBackInOrder) {
+  const TriangleMesh mesh = normalized(shapes::icosphere(3));
+  MatrixX3d X = shapes::icosphere(3).V;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> noise(-0.08,
+                                               0.08);  // beyond half an edge: many faces turn over
+  for (int v = 0; v < X.rows(); v += 5)
+    X.row(v) =
+        (X.row(v) + Eigen::RowVector3d(noise(random), noise(random), noise(random))).normalized();
+  ASSERT_GT(turned_faces(mesh.F, X), 10);
+  ProgressiveMesh full;
+  full.vertex_count = mesh.vertex_count();
+  full.coarsest = mesh.F;
+  full.alive.assign(static_cast<std::size_t>(mesh.face_count()), true);
+  Refinement level(std::move(full));
+  ASSERT_TRUE(collapse_turned_faces(
+      X, std::vector<bool>(static_cast<std::size_t>(mesh.vertex_count()), false), level));
+  EXPECT_EQ(turned_faces(level.compact_faces(), X), 0);
+  std::vector<int> hint(static_cast<std::size_t>(mesh.vertex_count()), 0);
+  ASSERT_TRUE(refine_on_sphere(
+      level, mesh.V, SphereLift(), {.until_vertices = mesh.vertex_count()}, X, hint));
+  EXPECT_EQ(level.compact_faces(), mesh.F);
+  EXPECT_EQ(turned_faces(mesh.F, X), 0);
+}
+
+TEST(Overlay, OfTwoTurnedSpheresIsABijection) {
+  const TriangleMesh a = shapes::icosphere(3), b = shapes::icosphere(2);
+  const auto map = overlay_on_sphere(a, a.V, b, turned(b.V, 0.7));
+  ASSERT_TRUE(map) << map.error().message;
+  const Status valid = validate(*map, a, b);
+  EXPECT_TRUE(valid) << valid.error().message;
+  const MapQuality quality = measure_map(*map, a, b);
+  EXPECT_EQ(quality.flipped, 0);
+  EXPECT_NEAR(quality.source_coverage, 1, 1e-9);  // rounding
+  EXPECT_NEAR(quality.target_coverage, 1, 1e-9);
+}
+
+TEST(Overlay, OfAMeshWithItselfIsTheIdentity) {
+  const TriangleMesh mesh = shapes::icosphere(2);
+  const auto map = overlay_on_sphere(mesh, mesh.V, mesh, mesh.V);
+  ASSERT_TRUE(map) << map.error().message;
+  EXPECT_EQ(map->polygon_count(), mesh.face_count());
+  EXPECT_EQ(map->point_count(), mesh.vertex_count());
+  EXPECT_EQ(map->source_face, map->target_face);
+  EXPECT_TRUE(validate(*map, mesh, mesh));
+}
+
+TEST(Overlay, KeepsCoincidingVerticesTogether) {
+  const TriangleMesh a = shapes::icosphere(2), b = shapes::icosphere(3);
+  MatrixX3d Y = turned(b.V, 0.4);
+  // Vertex 0 of b meets vertex 5 of a: turn b on until it does, then make the doubles equal.
+  const Eigen::Quaterniond q =
+      Eigen::Quaterniond::FromTwoVectors(Vector3d(Y.row(0)), Vector3d(a.V.row(5)));
+  Y = (Y * q.toRotationMatrix().transpose()).eval();
+  Y.row(0) = a.V.row(5);
+  const auto map = overlay_on_sphere(a, a.V, b, Y);
+  ASSERT_TRUE(map) << map.error().message;
+  EXPECT_EQ(map->point_of_source_vertex[5], map->point_of_target_vertex[0]);
+  EXPECT_TRUE(validate(*map, a, b));
+}
+
+TEST(Overlay, NamesAVertexOnAnEdge) {
+  // Vertices of the finer icosphere are midpoints of the coarser one's edges.
+  const TriangleMesh a = shapes::icosphere(2), b = shapes::icosphere(1);
+  SpecialPosition special;
+  const auto map = overlay_on_sphere(a, a.V, b, b.V, &special);
+  ASSERT_FALSE(map);
+  EXPECT_TRUE(special.on_source);
+  EXPECT_GE(special.vertex, b.vertex_count());
+}
+
+TEST(ChainDisc, OfASurfaceOnItselfIsAnIsometry) {
+  const TriangleMesh mesh = limbed(3);
+  const auto disc = cut_along_chain(mesh, limb_tips(mesh));
+  ASSERT_TRUE(disc) << disc.error().message;
+  EXPECT_TRUE(validate(disc->mesh));
+  EXPECT_EQ(euler_characteristic(disc->mesh), 1);
+  EXPECT_NEAR(disc_distortion(*disc, *disc), std::log(4.0), 1e-9);  // rounding
+}
+
+TEST(Judge, PrefersTheTruthToSwappedLimbs) {
+  const TriangleMesh a = limbed(3), b = limbed(4);
+  const std::vector<int> tips_a = limb_tips(a), tips_b = limb_tips(b);
+  const auto source = make_shape(a, tips_a), target = make_shape(b, tips_b);
+  ASSERT_TRUE(source && target);
+  std::vector<int> order{0, 1, 2, 3};
+  std::vector<Candidate> candidates;
+  do {
+    Candidate c;
+    for (std::size_t i = 0; i < 4; ++i)
+      c.landmarks.push_back({tips_a[i], tips_b[static_cast<std::size_t>(order[i])], false});
+    candidates.push_back(c);
+  } while (std::next_permutation(order.begin(), order.end()));
+  const auto judgement = judge(*source, *target, candidates);
+  ASSERT_TRUE(judgement) << judgement.error().message;
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_EQ(judgement->ranking[0].landmarks[i].target_vertex, tips_b[i]);
+  EXPECT_GT(judgement->margin, 0.1);
+  EXPECT_TRUE(contradicts(judgement->ranking[0], judgement->ranking[1]));
+}
+
+TEST(MakeMap, FindsTheSameSurfaceInAnotherTriangulation) {
+  const TriangleMesh a = limbed(3), b = limbed(4);
+  std::vector<Landmark> landmarks;
+  const std::vector<int> tips_a = limb_tips(a);
+  for (int v : tips_a)
+    landmarks.push_back(
+        {v, v});  // the finer mesh keeps the coarser one's vertices and their numbers
+  const auto source = make_shape(a, tips_a), target = make_shape(b, tips_a);
+  ASSERT_TRUE(source && target);
+  const auto initial = initial_map(*source, *target, landmarks, 4);
+  ASSERT_TRUE(initial) << initial.error().message;
+  const auto result = optimize_map(*source, *target, *initial, landmarks);
+  ASSERT_TRUE(result) << result.error().message;
+  const Status valid = validate(result->map, a, b);
+  EXPECT_TRUE(valid) << valid.error().message;
+  EXPECT_EQ(result->quality.flipped, 0);
+  for (const Landmark& l : landmarks)
+    EXPECT_EQ(result->map.point_of_source_vertex[static_cast<std::size_t>(l.source_vertex)],
+              result->map.point_of_target_vertex[static_cast<std::size_t>(l.target_vertex)]);
+  // The coarse mesh's faces are chords of the fine one's: errors are those of its resolution, edges
+  // of about 0.05.
+  double sum = 0;
+  for (int v = 0; v < a.vertex_count(); ++v)
+    sum += (position(b,
+                     result->map.target[static_cast<std::size_t>(
+                         result->map.point_of_source_vertex[static_cast<std::size_t>(v)])]) -
+            b.position(v))
+               .norm();
+  EXPECT_LT(sum / a.vertex_count(), 0.02);
+  EXPECT_LT(result->quality.median, 4.5);
+}
+
+TEST(MakeShape, NamesATopologyItCannotMap) {
+  const auto shape = make_shape(normalized(shapes::torus(2, 1, 12, 8)), {});
+  ASSERT_FALSE(shape);
+  EXPECT_EQ(shape.error().code, ErrorCode::kNoCorrespondence);
+  EXPECT_EQ(shape.error().message,
+            "surface: Euler characteristic 0 (genus 1), only spheres (2) can be mapped");
+}
+
+}  // namespace
+}  // namespace crosspatch
