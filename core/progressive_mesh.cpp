@@ -44,12 +44,15 @@ OmMesh to_openmesh(const MatrixX3d& V, const MatrixX3i& F) {
 
 using CollapseList = std::vector<std::pair<int, int>>;
 
-/// The collapses (removed, kept) that bring the mesh down to `vertices`, cheapest first.
+/// The collapses (removed, kept) that bring the mesh down to `vertices`, cheapest first; vertices
+/// in `locked` stay.
 CollapseList decimate(const MatrixX3d& V,
                       const MatrixX3i& F,
                       int vertices,
-                      const ProgressiveOptions* keep_shape) {
+                      const std::vector<int>& locked,
+                      bool keep_normals) {
   OmMesh om = to_openmesh(V, F);
+  for (int v : locked) om.status(om.vertex_handle(static_cast<unsigned>(v))).set_locked(true);
   OpenMesh::Decimater::DecimaterT<OmMesh> decimater(om);
   OpenMesh::Decimater::ModQuadricT<OmMesh>::Handle quadric;
   OpenMesh::Decimater::ModProgMeshT<OmMesh>::Handle history;
@@ -57,9 +60,7 @@ CollapseList decimate(const MatrixX3d& V,
   decimater.add(quadric);
   decimater.module(quadric).unset_max_err();
   decimater.add(history);
-  if (keep_shape != nullptr) {
-    for (int v : keep_shape->protected_vertices)
-      om.status(om.vertex_handle(static_cast<unsigned>(v))).set_locked(true);
+  if (keep_normals) {
     decimater.add(turning);
     decimater.module(turning).set_max_normal_deviation(90);
   }
@@ -102,13 +103,23 @@ MatrixX3i collapsed_faces(const MatrixX3i& F,
 Result<ProgressiveMesh> make_progressive_mesh(const TriangleMesh& mesh,
                                               const ProgressiveOptions& options) {
   CollapseList collapses;
-  if (mesh.vertex_count() > options.shape_vertices)
-    collapses = decimate(mesh.V, mesh.F, options.shape_vertices, &options);
-  std::vector<int> vertex;
-  const MatrixX3i F = collapsed_faces(mesh.F, mesh.vertex_count(), collapses, vertex);
-  const MatrixX3d V = mesh.V(vertex, Eigen::all);
-  for (const auto& [removed, kept] : decimate(V, F, 4, nullptr))
-    collapses.emplace_back(vertex[at(removed)], vertex[at(kept)]);
+  // What the rule on normals leaves over is collapsed without it; landmarks go only below the
+  // levels that stand for the shape.
+  const auto collapse_to = [&](int vertices, bool keep_landmarks, bool keep_normals) {
+    std::vector<int> vertex, locked;
+    const MatrixX3i F = collapsed_faces(mesh.F, mesh.vertex_count(), collapses, vertex);
+    if (static_cast<int>(vertex.size()) <= vertices) return;
+    for (int v : options.protected_vertices)
+      if (keep_landmarks)
+        locked.push_back(
+            static_cast<int>(std::lower_bound(vertex.begin(), vertex.end(), v) - vertex.begin()));
+    const MatrixX3d V = mesh.V(vertex, Eigen::all);
+    for (const auto& [removed, kept] : decimate(V, F, vertices, locked, keep_normals))
+      collapses.emplace_back(vertex[at(removed)], vertex[at(kept)]);
+  };
+  collapse_to(options.shape_vertices, true, true);
+  collapse_to(options.shape_vertices, true, false);
+  collapse_to(4, false, false);
   const int left = mesh.vertex_count() - static_cast<int>(collapses.size());
   if (left != 4)
     return fail(

@@ -50,7 +50,7 @@ std::vector<int> level_vertices(const MeshLevel& level, const std::vector<int>& 
 }
 
 /// The shortest open chains through all points, given their distances (symmetric k x k): every one
-/// for up to 7 points, else nearest-neighbour chains from each start, improved by reversals.
+/// for up to 7 points, else nearest-neighbour chains from some of them, improved by reversals.
 std::vector<std::vector<int>> shortest_chains(const Eigen::MatrixXd& D, int count) {
   const int k = static_cast<int>(D.rows());
   const auto length = [&](const std::vector<int>& c) {
@@ -67,7 +67,8 @@ std::vector<std::vector<int>> shortest_chains(const Eigen::MatrixXd& D, int coun
       if (chain.front() < chain.back()) chains.emplace_back(length(chain), chain);
     } while (std::next_permutation(chain.begin(), chain.end()));
   } else {
-    for (int start = 0; start < k; ++start) {
+    constexpr int kStarts = 12;
+    for (int start = 0; start < std::min(k, kStarts); ++start) {
       std::iota(chain.begin(), chain.end(), 0);
       std::swap(chain[0], chain[at(start)]);
       for (size_t i = 1; i < chain.size(); ++i)
@@ -120,6 +121,7 @@ std::vector<std::pair<std::vector<int>, std::vector<int>>> ChainPlanner::chains(
   }
   a = level_vertices(source_.coarse, a);
   b = level_vertices(target_.coarse, b);
+  if (std::count(a.begin(), a.end(), -1) + std::count(b.begin(), b.end(), -1) > 0) return {};
   Eigen::MatrixXd D(landmarks.size(), landmarks.size());
   for (int i = 0; i < D.rows(); ++i) {
     const auto& da = distances(source_, source_distances_, a[at(i)]);

@@ -24,7 +24,7 @@ class ChainPlanner {
 
   /// Up to `count` pairs of chains (vertices of the coarse levels) through the landmarks, those of
   /// least total length on both surfaces first; every order is looked at for up to 7 landmarks.
-  /// Landmarks must be vertices of the coarse levels.
+  /// None if a landmark is not a vertex of the coarse levels.
   [[nodiscard]] std::vector<std::pair<std::vector<int>, std::vector<int>>> chains(
       const std::vector<Landmark>& landmarks, int count) const;
 
