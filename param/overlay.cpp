@@ -109,20 +109,23 @@ class Walker {
     }
   }
 
-  /// Continues the search of doubles with exact signs.
-  int exact_face(int v, int face) const {
-    for (int steps = 0; steps < b_.mesh.face_count(); ++steps) {
-      int leave = -1;
-      for (int j = 0; j < 3; ++j) {
-        const int h = 3 * face + (j + steps) % 3;
-        const int side = orient_sphere(b_.x(b_.mesh.from(h)), b_.x(b_.mesh.to(h)), a_.x(v));
-        if (side < 0) leave = h;
-        if (side == 0) throw Special{v};
-      }
-      if (leave < 0) return face;
-      face = b_.mesh.twin[at(leave)] / 3;
-    }
+  /// The face of b that holds a's vertex v beyond doubt, looked for around `guess` and then
+  /// everywhere.
+  int exact_face(int v, int guess) const {
+    if (holds(guess, v)) return guess;
+    for (int k = 0; k < 3; ++k)
+      if (const int near = b_.mesh.twin[at(3 * guess + k)] / 3; holds(near, v)) return near;
+    for (int face = 0; face < b_.mesh.face_count(); ++face)
+      if (holds(face, v)) return face;
     throw Special{v};
+  }
+
+  bool holds(int face, int v) const {
+    const Vector3d x = a_.x(v), c[3] = {b_.x(b_.mesh.F(face, 0)),
+                                        b_.x(b_.mesh.F(face, 1)),
+                                        b_.x(b_.mesh.F(face, 2))};
+    return orient_sphere(c[0], c[1], x) > 0 && orient_sphere(c[1], c[2], x) > 0 &&
+           orient_sphere(c[2], c[0], x) > 0;
   }
 
   /// Side of b's vertex seen along a's directed edge u -> v.

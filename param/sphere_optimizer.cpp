@@ -20,6 +20,8 @@
 #include <numeric>
 #include <span>
 
+#include "param/sphere_orientation.hpp"
+
 namespace crosspatch {
 namespace {
 
@@ -40,10 +42,6 @@ Matrix32 tangent_basis(const Vector3d& x) {
   b.col(0) = x.cross(axis).normalized();
   b.col(1) = x.cross(b.col(0));
   return b;
-}
-
-double orientation(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-  return a.dot((b - a).cross(c - a));
 }
 
 Eigen::Vector4d vec(const Eigen::Matrix2d& m) {
@@ -203,7 +201,8 @@ class Optimizer {
   double evaluate(const MatrixX3d& X, std::vector<int>& hint, MatrixX3d& Y) const {
     const int faces = static_cast<int>(problem_.F.rows());
     for (int f = 0; f < faces; ++f)
-      if (!(orientation(corner(X, f, 0), corner(X, f, 1), corner(X, f, 2)) > 0)) return kInfinity;
+      if (!(sphere_orientation(corner(X, f, 0), corner(X, f, 1), corner(X, f, 2)) > 0))
+        return kInfinity;
     tbb::parallel_for(0, static_cast<int>(X.rows()), [&](int v) {
       if (active_[at(v)]) Y.row(v) = lift_.point(X.row(v).transpose(), hint[at(v)]).transpose();
     });
@@ -220,7 +219,7 @@ class Optimizer {
   [[nodiscard]] double face_energy(int f,
                                    const std::array<Vector3d, 3>& x,
                                    const std::array<Vector3d, 3>& y) const {
-    const double det = orientation(x[0], x[1], x[2]);
+    const double det = sphere_orientation(x[0], x[1], x[2]);
     if (!(det > 0)) return kInfinity;
     const double e =
         distortion(options_.distortion, problem_.rest_inverse[at(f)], y[0], y[1], y[2]);
@@ -317,7 +316,7 @@ class Optimizer {
   /// Barrier b = det0 / det as the square of the residual sqrt(b).
   void add_barrier(int f, FaceSystem& s) const {
     const Vector3d x[3] = {corner(X_, f, 0), corner(X_, f, 1), corner(X_, f, 2)};
-    const double det = orientation(x[0], x[1], x[2]);
+    const double det = sphere_orientation(x[0], x[1], x[2]);
     const double b = problem_.rest_area[f] / total_area_ * options_.barrier * reference_[f] / det;
     Vector6 ddet;
     for (int k = 0; k < 3; ++k)
@@ -430,8 +429,9 @@ class Optimizer {
       std::vector<bool> squeezed(part.size(), false);
       bool any = false;
       for (int f = 0; f < problem_.F.rows(); ++f) {
-        const double before = orientation(corner(X_, f, 0), corner(X_, f, 1), corner(X_, f, 2));
-        if (orientation(corner(X, f, 0), corner(X, f, 1), corner(X, f, 2)) > kKeep * before)
+        const double before =
+            sphere_orientation(corner(X_, f, 0), corner(X_, f, 1), corner(X_, f, 2));
+        if (sphere_orientation(corner(X, f, 0), corner(X, f, 1), corner(X, f, 2)) > kKeep * before)
           continue;
         any = true;
         for (int k = 0; k < 3; ++k) squeezed[at(problem_.F(f, k))] = true;
@@ -538,7 +538,7 @@ double smallest_orientation(const MatrixX3i& F, const MatrixX3d& X) {
   for (int f = 0; f < F.rows(); ++f)
     smallest = std::min(
         smallest,
-        orientation(
+        sphere_orientation(
             X.row(F(f, 0)).transpose(), X.row(F(f, 1)).transpose(), X.row(F(f, 2)).transpose()));
   return smallest;
 }

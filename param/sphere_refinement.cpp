@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "param/sphere_orientation.hpp"
+
 namespace crosspatch {
 namespace {
 
@@ -114,7 +116,7 @@ class Placer {
     for (size_t i = 0; i < ring_.size(); ++i) {
       const Vector3d p = X_.row(ring_[i].first).transpose(),
                      q = X_.row(ring_[i].second).transpose();
-      if (!(x.dot((p - x).cross(q - x)) > 0)) return std::numeric_limits<double>::infinity();
+      if (!(sphere_orientation(x, p, q) > 0)) return std::numeric_limits<double>::infinity();
       int fp = hint_[at(ring_[i].first)], fq = hint_[at(ring_[i].second)];
       sum += area_[static_cast<int>(i)] *
              distortion(distortion_, rest_[i], y, lift_.point(p, fp), lift_.point(q, fq));

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "param/sphere_orientation.hpp"
+
 namespace crosspatch {
 namespace {
 
@@ -35,8 +37,7 @@ class Untangler {
 
  private:
   [[nodiscard]] double orientation(int a, int b, int c) const {
-    const Vector3d p = X_.row(a), q = X_.row(b), r = X_.row(c);
-    return p.dot((q - p).cross(r - p));
+    return sphere_orientation(X_.row(a).transpose(), X_.row(b).transpose(), X_.row(c).transpose());
   }
 
   [[nodiscard]] bool turned(int f) const {
@@ -99,8 +100,9 @@ class Untangler {
 int turned_faces(const MatrixX3i& F, const MatrixX3d& X) {
   int count = 0;
   for (int f = 0; f < F.rows(); ++f) {
-    const Vector3d a = X.row(F(f, 0)), b = X.row(F(f, 1)), c = X.row(F(f, 2));
-    count += a.dot((b - a).cross(c - a)) > 0 ? 0 : 1;
+    const double det = sphere_orientation(
+        X.row(F(f, 0)).transpose(), X.row(F(f, 1)).transpose(), X.row(F(f, 2)).transpose());
+    count += det > 0 ? 0 : 1;
   }
   return count;
 }
