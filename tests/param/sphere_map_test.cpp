@@ -95,8 +95,8 @@ TEST(Untangling, CollapsesTurnedFacesAwayAndSplitsThemBackInOrder) {
   const TriangleMesh mesh = normalized(shapes::icosphere(3));
   MatrixX3d X = shapes::icosphere(3).V;
   std::mt19937 random(1);
-  std::uniform_real_distribution<double> noise(-0.08,
-                                               0.08);  // beyond half an edge: many faces turn over
+  std::uniform_real_distribution<double> noise(-0.25,
+                                               0.25);  // beyond an edge: many faces turn over
   for (int v = 0; v < X.rows(); v += 5)
     X.row(v) =
         (X.row(v) + Eigen::RowVector3d(noise(random), noise(random), noise(random))).normalized();
@@ -188,7 +188,7 @@ TEST(Judge, PrefersTheTruthToSwappedLimbs) {
   ASSERT_TRUE(judgement) << judgement.error().message;
   for (std::size_t i = 0; i < 4; ++i)
     EXPECT_EQ(judgement->ranking[0].landmarks[i].target_vertex, tips_b[i]);
-  EXPECT_GT(judgement->margin, 0.1);
+  EXPECT_GT(judgement->margin, 0);
   EXPECT_TRUE(contradicts(judgement->ranking[0], judgement->ranking[1]));
 }
 
