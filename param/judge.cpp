@@ -48,16 +48,15 @@ struct Trial {
   double distortion = kInfinity;
 };
 
-/// The trials of some candidates, evaluated.
+/// The trials of the candidates before `last`, evaluated.
 std::vector<Trial> run_trials(const ChainPlanner& planner,
                               const std::vector<Candidate>& candidates,
-                              size_t first,
                               size_t last,
                               int chains,
                               DiscCache& source,
                               DiscCache& target) {
   std::vector<Trial> trials;
-  for (size_t c = first; c < last; ++c)
+  for (size_t c = 0; c < last; ++c)
     for (auto& [a, b] : planner.chains(candidates[c].landmarks, chains)) {
       source.want(a);
       target.want(b);
@@ -90,7 +89,7 @@ Result<Judgement> judge(const Shape& source,
   DiscCache source_discs(source), target_discs(target);
   const auto evaluate = [&](size_t last, int chains) {
     std::vector<Trial> trials =
-        run_trials(planner, candidates, 0, last, chains, source_discs, target_discs);
+        run_trials(planner, candidates, last, chains, source_discs, target_discs);
     for (size_t c = 0; c < last; ++c) candidates[c].distortion = kInfinity;
     for (const Trial& t : trials)
       candidates[t.candidate].distortion =
