@@ -1,6 +1,7 @@
 #include "param/untangle.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "param/sphere_orientation.hpp"
@@ -45,6 +46,12 @@ class Untangler {
     return !(orientation(row[0], row[1], row[2]) > 0);
   }
 
+  /// Signed area of the spherical triangle (Van Oosterom & Strackee 1983).
+  [[nodiscard]] double solid_angle(int a, int b, int c) const {
+    const Vector3d x = X_.row(a).transpose(), y = X_.row(b).transpose(), z = X_.row(c).transpose();
+    return 2 * std::atan2(x.dot((y - x).cross(z - x)), 1 + x.dot(y) + y.dot(z) + z.dot(x));
+  }
+
   /// Vertices of turned faces, those with most of them first.
   [[nodiscard]] std::vector<int> turned_vertices() const {
     std::vector<int> count(at(static_cast<int>(X_.rows())), 0), vertices;
@@ -63,13 +70,18 @@ class Untangler {
   bool collapse_best(int v, int gain) {
     if (fixed_[at(v)] || level_.faces(v).empty()) return false;
     int before = 0;
-    for (int f : level_.faces(v)) before += turned(f) ? 1 : 0;
+    double covered = 0;
+    for (int f : level_.faces(v)) {
+      const auto row = level_.F().row(f);
+      before += turned(f) ? 1 : 0;
+      covered += solid_angle(row[0], row[1], row[2]);
+    }
     int best = -1, fewest = before - gain + 1;
     double best_smallest = 0;
     for (int u : level_.neighbours(v)) {
       if (!level_.can_collapse(v, u)) continue;
       int after = 0;
-      double smallest = std::numeric_limits<double>::infinity();
+      double smallest = std::numeric_limits<double>::infinity(), covered_after = 0;
       for (int f : level_.faces(v)) {
         auto row = level_.F().row(f).eval();
         if (row[0] == u || row[1] == u || row[2] == u) continue;
@@ -78,7 +90,10 @@ class Untangler {
         const double o = orientation(row[0], row[1], row[2]);
         after += o > 0 ? 0 : 1;
         smallest = std::min(smallest, o);
+        covered_after += solid_angle(row[0], row[1], row[2]);
       }
+      // Two fillings of one ring differ by whole spheres: the degree of the map must stay 1.
+      if (std::abs(covered_after - covered) > 1) continue;
       if (after < fewest || (after == fewest && best >= 0 && smallest > best_smallest)) {
         fewest = after;
         best = u;
