@@ -7,6 +7,7 @@
 
 #include "param/overlay.hpp"
 #include "param/sphere_refinement.hpp"
+#include "param/unfold.hpp"
 #include "param/untangle.hpp"
 
 namespace crosspatch {
@@ -59,7 +60,10 @@ class SphereMap {
       X_.row(a.vertex[at(i)]) = image.row(initial.source_disc.disc_vertex[at(i)]).normalized();
     for (const Landmark& l : landmarks_) X_.row(l.source_vertex) = Y_.row(l.target_vertex);
     while (level_.vertex_count() < a.mesh.vertex_count()) level_.split();
-    if (!collapse_turned_faces(X_, fixed_, level_))
+    SphereProblem problem = make_sphere_problem(level_.compact_faces(), source_.mesh.V, pinned_);
+    hold_against_target(problem);
+    if ((unfold(problem, X_) > 0 && !collapse_turned_faces(X_, fixed_, level_)) ||
+        degree(level_.compact_faces(), X_) != 1)
       return fail(ErrorCode::kNoCorrespondence,
                   "map: the initial map cannot be untangled on the sphere");
     return {};

@@ -9,8 +9,6 @@
 
 #include <tbb/parallel_for.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
@@ -42,95 +40,6 @@ Matrix32 tangent_basis(const Vector3d& x) {
   b.col(0) = x.cross(axis).normalized();
   b.col(1) = x.cross(b.col(0));
   return b;
-}
-
-Eigen::Vector4d vec(const Eigen::Matrix2d& m) {
-  return {m(0, 0), m(1, 0), m(0, 1), m(1, 1)};
-}
-
-/// Value, gradient and positive semidefinite Hessian of a distortion as functions of the entries of
-/// J (column by column).
-struct IsotropicHessian {
-  double energy;
-  Eigen::Vector4d g;
-  Eigen::Matrix4d H;
-};
-
-/// First and second derivatives in the singular values, and the eigenvalues (d1 -+ d2) / (s1 -+ s2)
-/// in closed form.
-struct SingularDerivatives {
-  double energy, d1, d2, d11, d22, d12, flip, twist;
-};
-
-SingularDerivatives symmetric_dirichlet_derivatives(double s1, double s2) {
-  const double i1 = 1 / (s1 * s1), i2 = 1 / (s2 * s2), cube = s1 * s2 * s1 * s2 * s1 * s2;
-  return {s1 * s1 + s2 * s2 + i1 + i2,
-          2 * s1 - 2 * i1 / s1,
-          2 * s2 - 2 * i2 / s2,
-          2 + 6 * i1 * i1,
-          2 + 6 * i2 * i2,
-          0,
-          2 + 2 * (s1 * s1 + s1 * s2 + s2 * s2) / cube,
-          2 - 2 * (s1 * s1 - s1 * s2 + s2 * s2) / cube};
-}
-
-SingularDerivatives both_ways_derivatives(double s1, double s2) {
-  const SingularDerivatives q = symmetric_dirichlet_derivatives(s1, s2);
-  const double p = s1 * s2;
-  return {(1 + p) * q.energy / 2,
-          (s2 * q.energy + (1 + p) * q.d1) / 2,
-          (s1 * q.energy + (1 + p) * q.d2) / 2,
-          (2 * s2 * q.d1 + (1 + p) * q.d11) / 2,
-          (2 * s1 * q.d2 + (1 + p) * q.d22) / 2,
-          (q.energy + s1 * q.d1 + s2 * q.d2) / 2,
-          ((1 + p) * q.flip - q.energy) / 2,
-          ((1 + p) * q.twist + q.energy) / 2};
-}
-
-constexpr double kAreaWeight = 1.0 / 10;  ///< of log(s1 s2)^2 in kNearlyConformal
-
-SingularDerivatives nearly_conformal_derivatives(double s1, double s2) {
-  const double p = s1 * s2, log = std::log(p), w = 2 * kAreaWeight;
-  return {s1 / s2 + s2 / s1 + kAreaWeight * log * log,
-          1 / s2 - s2 / (s1 * s1) + w * log / s1,
-          1 / s1 - s1 / (s2 * s2) + w * log / s2,
-          2 * s2 / (s1 * s1 * s1) + w * (1 - log) / (s1 * s1),
-          2 * s1 / (s2 * s2 * s2) + w * (1 - log) / (s2 * s2),
-          -1 / (s1 * s1) - 1 / (s2 * s2) + w / p,
-          (1 - w * log) / p + (s1 * s1 + p + s2 * s2) / (p * p),
-          (1 + w * log) / p - (s1 * s1 - p + s2 * s2) / (p * p)};
-}
-
-/// Smith, de Goes & Kim 2019, "Analytic eigensystems for isotropic distortion energies": with J = U
-/// diag(s) V^T the Hessian acts on the span of u_i v_i^T as the Hessian in s, and has the
-/// eigenmatrices (u_1 v_2^T + u_2 v_1^T) / sqrt(2) and (u_2 v_1^T - u_1 v_2^T) / sqrt(2). Negative
-/// eigenvalues are replaced by zero.
-IsotropicHessian isotropic_hessian(const Eigen::Matrix2d& J, Distortion distortion) {
-  const Eigen::JacobiSVD<Eigen::Matrix2d> svd(J, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Matrix2d &U = svd.matrixU(), &V = svd.matrixV();
-  constexpr double kTiny = 1e-150;
-  const double s1 = std::max(svd.singularValues()[0], kTiny),
-               s2 = std::max(svd.singularValues()[1], kTiny);
-  const SingularDerivatives d = distortion == Distortion::kBothWays ? both_ways_derivatives(s1, s2)
-                                : distortion == Distortion::kSymmetricDirichlet
-                                    ? symmetric_dirichlet_derivatives(s1, s2)
-                                    : nearly_conformal_derivatives(s1, s2);
-  Eigen::Matrix<double, 4, 2> D;
-  D << vec(U.col(0) * V.col(0).transpose()), vec(U.col(1) * V.col(1).transpose());
-  const Eigen::Vector4d a = vec(U.col(0) * V.col(1).transpose()),
-                        b = vec(U.col(1) * V.col(0).transpose());
-  const Eigen::Vector4d flip = (a + b) / std::sqrt(2.0), twist = (b - a) / std::sqrt(2.0);
-  Eigen::Matrix2d S;
-  S << d.d11, d.d12, d.d12, d.d22;
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen;
-  eigen.computeDirect(S);
-  const Eigen::Matrix2d positive = eigen.eigenvectors() *
-                                   eigen.eigenvalues().cwiseMax(0).asDiagonal() *
-                                   eigen.eigenvectors().transpose();
-  return {d.energy,
-          D * Vector2d(d.d1, d.d2),
-          D * positive * D.transpose() + std::max(0.0, d.flip) * flip * flip.transpose() +
-              std::max(0.0, d.twist) * twist * twist.transpose()};
 }
 
 /// Hessian and gradient of one face in the six tangent coordinates of its corners.
@@ -506,23 +415,6 @@ SphereProblem make_sphere_problem(MatrixX3i F, const MatrixX3d& V, const std::ve
   for (int v : pinned) problem.fixed[at(v)] = true;
   problem.F = std::move(F);
   return problem;
-}
-
-double distortion(Distortion distortion,
-                  const Eigen::Matrix2d& D,
-                  const Vector3d& y0,
-                  const Vector3d& y1,
-                  const Vector3d& y2) {
-  Matrix32 E;
-  E << y1 - y0, y2 - y0;
-  const Eigen::Matrix2d G = D.transpose() * (E.transpose() * E) * D;
-  const double det = G.determinant();
-  if (!(det > 0)) return kInfinity;
-  if (distortion == Distortion::kSymmetricDirichlet) return G.trace() * (1 + 1 / det);
-  if (distortion == Distortion::kBothWays)
-    return G.trace() * (1 + 1 / det) * (1 + std::sqrt(det)) / 2;
-  const double log = std::log(det) / 2;
-  return G.trace() / std::sqrt(det) + kAreaWeight * log * log;
 }
 
 SphereOptimizerReport optimize_on_sphere(const SphereProblem& problem,

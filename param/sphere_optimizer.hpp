@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "param/distortion.hpp"
 #include "param/lift.hpp"
 
 namespace crosspatch {
@@ -23,21 +24,6 @@ struct SphereProblem {
 /// of their longest edge, because the energy of a flatter triangle says nothing about the surface.
 /// `pinned` vertices do not move.
 SphereProblem make_sphere_problem(MatrixX3i F, const MatrixX3d& V, const std::vector<int>& pinned);
-
-/// What is minimised, in the singular values s1, s2 of the Jacobian of a face.
-enum class Distortion {
-  kSymmetricDirichlet,  ///< s1^2 + s2^2 + 1/s1^2 + 1/s2^2
-  /// (1 + s1 s2) / 2 times that: the energy of the map and of its inverse, each weighted by the
-  /// area of its own surface. With kSymmetricDirichlet a limb may slip off its counterpart, whose
-  /// end a few stretched faces cover at hardly any cost.
-  kBothWays,
-  /// s1/s2 + s2/s1 + log(s1 s2)^2 / 10: for embeddings. Nearly conformal, so that great-circle
-  /// edges are nearly straight on the surface, but without the exponential shrinking of long limbs,
-  /// in whose wake optimisers creep. Measured: with the symmetric Dirichlet energy instead a tenth
-  /// of a human map's area has energies above 35 (from 17), with a weight of 1/200 limbs slip (mean
-  /// error 10 from 3 on a FAUST pair).
-  kNearlyConformal,
-};
 
 struct SphereOptimizerOptions {
   Distortion distortion = Distortion::kBothWays;
@@ -65,13 +51,6 @@ SphereOptimizerReport optimize_on_sphere(const SphereProblem& problem,
                                          const SphereOptimizerOptions& options,
                                          MatrixX3d& X,
                                          std::vector<int>& hint);
-
-/// Distortion of one face with lifted corners y; infinite where it has no area.
-double distortion(Distortion distortion,
-                  const Eigen::Matrix2d& rest_inverse,
-                  const Vector3d& y0,
-                  const Vector3d& y1,
-                  const Vector3d& y2);
 
 /// Smallest orientation det(x0, x1, x2) of the faces, in the double arithmetic of the optimiser.
 double smallest_orientation(const MatrixX3i& F, const MatrixX3d& X);

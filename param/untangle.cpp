@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "param/sphere_orientation.hpp"
 
@@ -13,6 +14,11 @@ using std::size_t;
 
 size_t at(int i) {
   return static_cast<size_t>(i);
+}
+
+/// Signed area of a spherical triangle (Van Oosterom & Strackee 1983).
+double solid_angle(const Vector3d& x, const Vector3d& y, const Vector3d& z) {
+  return 2 * std::atan2(x.dot((y - x).cross(z - x)), 1 + x.dot(y) + y.dot(z) + z.dot(x));
 }
 
 class Untangler {
@@ -46,10 +52,9 @@ class Untangler {
     return !(orientation(row[0], row[1], row[2]) > 0);
   }
 
-  /// Signed area of the spherical triangle (Van Oosterom & Strackee 1983).
   [[nodiscard]] double solid_angle(int a, int b, int c) const {
-    const Vector3d x = X_.row(a).transpose(), y = X_.row(b).transpose(), z = X_.row(c).transpose();
-    return 2 * std::atan2(x.dot((y - x).cross(z - x)), 1 + x.dot(y) + y.dot(z) + z.dot(x));
+    return crosspatch::solid_angle(
+        X_.row(a).transpose(), X_.row(b).transpose(), X_.row(c).transpose());
   }
 
   /// Vertices of turned faces, those with most of them first.
@@ -120,6 +125,14 @@ int turned_faces(const MatrixX3i& F, const MatrixX3d& X) {
     count += det > 0 ? 0 : 1;
   }
   return count;
+}
+
+int degree(const MatrixX3i& F, const MatrixX3d& X) {
+  double covered = 0;
+  for (int f = 0; f < F.rows(); ++f)
+    covered += solid_angle(
+        X.row(F(f, 0)).transpose(), X.row(F(f, 1)).transpose(), X.row(F(f, 2)).transpose());
+  return static_cast<int>(std::lround(covered / (4 * std::numbers::pi)));
 }
 
 bool collapse_turned_faces(const MatrixX3d& X, const std::vector<bool>& fixed, Refinement& level) {

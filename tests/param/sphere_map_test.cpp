@@ -12,6 +12,7 @@
 #include "param/make_map.hpp"
 #include "param/overlay.hpp"
 #include "param/sphere_refinement.hpp"
+#include "param/unfold.hpp"
 #include "param/untangle.hpp"
 #include "shapes.hpp"
 
@@ -109,11 +110,43 @@ TEST(Untangling, CollapsesTurnedFacesAwayAndSplitsThemBackInOrder) {
   ASSERT_TRUE(collapse_turned_faces(
       X, std::vector<bool>(static_cast<std::size_t>(mesh.vertex_count()), false), level));
   EXPECT_EQ(turned_faces(level.compact_faces(), X), 0);
+  EXPECT_EQ(degree(level.compact_faces(), X), 1);
   std::vector<int> hint(static_cast<std::size_t>(mesh.vertex_count()), 0);
   ASSERT_TRUE(refine_on_sphere(
       level, mesh.V, SphereLift(), {.until_vertices = mesh.vertex_count()}, X, hint));
   EXPECT_EQ(level.compact_faces(), mesh.F);
   EXPECT_EQ(turned_faces(mesh.F, X), 0);
+}
+
+TEST(Unfolding, TurnsFacesBackAroundPinnedVertices) {
+  const TriangleMesh mesh = normalized(shapes::icosphere(3));
+  MatrixX3d X = shapes::icosphere(3).V;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> noise(-0.25, 0.25);
+  std::vector<int> pinned;
+  for (int v = 0; v < X.rows(); ++v) {
+    if (v % 5 == 0)
+      X.row(v) =
+          (X.row(v) + Eigen::RowVector3d(noise(random), noise(random), noise(random))).normalized();
+    else if (v % 7 == 0)
+      pinned.push_back(v);
+  }
+  ASSERT_GT(turned_faces(mesh.F, X), 10);
+  const MatrixX3d before = X;
+  EXPECT_EQ(unfold(make_sphere_problem(mesh.F, mesh.V, pinned), X), 0);
+  EXPECT_EQ(turned_faces(mesh.F, X), 0);
+  EXPECT_EQ(degree(mesh.F, X), 1);
+  for (int v : pinned) EXPECT_EQ(X.row(v), before.row(v));
+}
+
+TEST(Unfolding, SaysHowManyFacesStayTurned) {
+  // Neighbours pinned in each other's places: no position of the others can help.
+  const TriangleMesh mesh = normalized(shapes::icosphere(2));
+  MatrixX3d X = shapes::icosphere(2).V;
+  std::vector<int> pinned;
+  for (int k = 0; k < 3; ++k) pinned.push_back(mesh.F(0, k));
+  X.row(pinned[0]).swap(X.row(pinned[1]));
+  EXPECT_GT(unfold(make_sphere_problem(mesh.F, mesh.V, pinned), X), 0);
 }
 
 TEST(Overlay, OfTwoTurnedSpheresIsABijection) {

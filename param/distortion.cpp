@@ -1,0 +1,104 @@
+#include "param/distortion.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace crosspatch {
+namespace {
+
+/// First and second derivatives in the singular values, and the eigenvalues (d1 -+ d2) / (s1 -+ s2)
+/// in closed form.
+struct SingularDerivatives {
+  double energy, d1, d2, d11, d22, d12, flip, twist;
+};
+
+SingularDerivatives symmetric_dirichlet_derivatives(double s1, double s2) {
+  const double i1 = 1 / (s1 * s1), i2 = 1 / (s2 * s2), cube = s1 * s2 * s1 * s2 * s1 * s2;
+  return {s1 * s1 + s2 * s2 + i1 + i2,
+          2 * s1 - 2 * i1 / s1,
+          2 * s2 - 2 * i2 / s2,
+          2 + 6 * i1 * i1,
+          2 + 6 * i2 * i2,
+          0,
+          2 + 2 * (s1 * s1 + s1 * s2 + s2 * s2) / cube,
+          2 - 2 * (s1 * s1 - s1 * s2 + s2 * s2) / cube};
+}
+
+SingularDerivatives both_ways_derivatives(double s1, double s2) {
+  const SingularDerivatives q = symmetric_dirichlet_derivatives(s1, s2);
+  const double p = s1 * s2;
+  return {(1 + p) * q.energy / 2,
+          (s2 * q.energy + (1 + p) * q.d1) / 2,
+          (s1 * q.energy + (1 + p) * q.d2) / 2,
+          (2 * s2 * q.d1 + (1 + p) * q.d11) / 2,
+          (2 * s1 * q.d2 + (1 + p) * q.d22) / 2,
+          (q.energy + s1 * q.d1 + s2 * q.d2) / 2,
+          ((1 + p) * q.flip - q.energy) / 2,
+          ((1 + p) * q.twist + q.energy) / 2};
+}
+
+constexpr double kAreaWeight = 1.0 / 10;  ///< of log(s1 s2)^2 in kNearlyConformal
+
+SingularDerivatives nearly_conformal_derivatives(double s1, double s2) {
+  const double p = s1 * s2, log = std::log(p), w = 2 * kAreaWeight;
+  return {s1 / s2 + s2 / s1 + kAreaWeight * log * log,
+          1 / s2 - s2 / (s1 * s1) + w * log / s1,
+          1 / s1 - s1 / (s2 * s2) + w * log / s2,
+          2 * s2 / (s1 * s1 * s1) + w * (1 - log) / (s1 * s1),
+          2 * s1 / (s2 * s2 * s2) + w * (1 - log) / (s2 * s2),
+          -1 / (s1 * s1) - 1 / (s2 * s2) + w / p,
+          (1 - w * log) / p + (s1 * s1 + p + s2 * s2) / (p * p),
+          (1 + w * log) / p - (s1 * s1 - p + s2 * s2) / (p * p)};
+}
+
+}  // namespace
+
+double distortion(Distortion distortion,
+                  const Eigen::Matrix2d& D,
+                  const Vector3d& y0,
+                  const Vector3d& y1,
+                  const Vector3d& y2) {
+  Eigen::Matrix<double, 3, 2> E;
+  E << y1 - y0, y2 - y0;
+  const Eigen::Matrix2d G = D.transpose() * (E.transpose() * E) * D;
+  const double det = G.determinant();
+  if (!(det > 0)) return std::numeric_limits<double>::infinity();
+  if (distortion == Distortion::kSymmetricDirichlet) return G.trace() * (1 + 1 / det);
+  if (distortion == Distortion::kBothWays)
+    return G.trace() * (1 + 1 / det) * (1 + std::sqrt(det)) / 2;
+  const double log = std::log(det) / 2;
+  return G.trace() / std::sqrt(det) + kAreaWeight * log * log;
+}
+
+IsotropicHessian isotropic_hessian(const Eigen::Matrix2d& J, Distortion distortion) {
+  const Eigen::JacobiSVD<Eigen::Matrix2d> svd(J, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Matrix2d &U = svd.matrixU(), &V = svd.matrixV();
+  constexpr double kTiny = 1e-150;
+  const double s1 = std::max(svd.singularValues()[0], kTiny),
+               s2 = std::max(svd.singularValues()[1], kTiny);
+  const SingularDerivatives d = distortion == Distortion::kBothWays ? both_ways_derivatives(s1, s2)
+                                : distortion == Distortion::kSymmetricDirichlet
+                                    ? symmetric_dirichlet_derivatives(s1, s2)
+                                    : nearly_conformal_derivatives(s1, s2);
+  Eigen::Matrix<double, 4, 2> D;
+  D << vec(U.col(0) * V.col(0).transpose()), vec(U.col(1) * V.col(1).transpose());
+  const Eigen::Vector4d a = vec(U.col(0) * V.col(1).transpose()),
+                        b = vec(U.col(1) * V.col(0).transpose());
+  const Eigen::Vector4d flip = (a + b) / std::sqrt(2.0), twist = (b - a) / std::sqrt(2.0);
+  Eigen::Matrix2d S;
+  S << d.d11, d.d12, d.d12, d.d22;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen;
+  eigen.computeDirect(S);
+  const Eigen::Matrix2d positive = eigen.eigenvectors() *
+                                   eigen.eigenvalues().cwiseMax(0).asDiagonal() *
+                                   eigen.eigenvectors().transpose();
+  return {d.energy,
+          D * Vector2d(d.d1, d.d2),
+          D * positive * D.transpose() + std::max(0.0, d.flip) * flip * flip.transpose() +
+              std::max(0.0, d.twist) * twist * twist.transpose()};
+}
+
+}  // namespace crosspatch
