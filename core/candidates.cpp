@@ -55,7 +55,8 @@ class Search {
  private:
   void grow(const Partial& partial, std::vector<Partial>& out) const {
     const int tip = static_cast<int>(partial.target.size());
-    for (int j = 0; j < target_.count(); ++j) {
+    const bool is_fixed = tip < options_.fixed;
+    for (int j = is_fixed ? tip : options_.fixed; j < (is_fixed ? tip + 1 : target_.count()); ++j) {
       if (std::find(partial.target.begin(), partial.target.end(), j) != partial.target.end())
         continue;
       Partial next = partial;
@@ -69,7 +70,7 @@ class Search {
       finish(std::move(next), out);
     }
     const int still_possible = partial.pairs + source_.count() - tip - 1;
-    if (still_possible < least_pairs_) return;
+    if (is_fixed || still_possible < least_pairs_) return;
     Partial next = partial;
     next.target.push_back(-1);
     finish(std::move(next), out);
@@ -144,6 +145,7 @@ std::vector<TipAssignment> propose(const TipDescriptors& source,
                                    const TipDescriptors& target,
                                    const ProposalOptions& options) {
   assert(source.signature.cols() == target.signature.cols());
+  assert(options.fixed <= std::min(source.count(), target.count()));
   assert(source.count() < 128 && target.count() < 128);
   return Search(source, target, options).run();
 }

@@ -44,6 +44,9 @@ struct ProposalOptions {
   /// Assignments may leave out one tip, an outlier, if at least this many pairs are left: fewer say
   /// nothing about a surface.
   int least_pairs = 3;
+  /// The first `fixed` tips of both surfaces are landmarks: the i-th goes to the i-th in every
+  /// assignment, and their distances say where the others belong.
+  int fixed = 0;
   /// Partial assignments kept a step when there are too many to try them all.
   int beam = 3000;
 };

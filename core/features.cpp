@@ -58,4 +58,21 @@ Result<ShapeFeatures> compute_features(const TriangleMesh& mesh, const FeatureOp
   return features;
 }
 
+ShapeFeatures with_landmarks(const TriangleMesh& mesh,
+                             ShapeFeatures features,
+                             const std::vector<int>& landmarks,
+                             double clearance) {
+  if (landmarks.empty()) return features;
+  const double unit = std::sqrt(total_area(mesh));
+  const Eigen::VectorXd distance = geodesic_distance_to_set(mesh, landmarks) / unit;
+  std::erase_if(features.tips, [&](const Tip& tip) { return distance[tip.vertex] <= clearance; });
+  std::vector<Tip> tips;
+  for (const int v : landmarks) tips.push_back({v, 1, features.log_adf[v]});
+  features.tips.insert(features.tips.begin(), tips.begin(), tips.end());
+  std::vector<int> vertices;
+  for (const Tip& tip : features.tips) vertices.push_back(tip.vertex);
+  features.tip_distances = geodesic_distances(mesh, vertices) / unit;
+  return features;
+}
+
 }  // namespace crosspatch

@@ -51,4 +51,11 @@ Result<std::vector<Tip>> canonical_tips(const TriangleMesh& mesh,
 Result<ShapeFeatures> compute_features(const TriangleMesh& mesh,
                                        const FeatureOptions& options = {});
 
+/// The features with `landmarks` (vertices) as the first tips, in their order; of the tips found,
+/// those stay that are farther than `clearance` (in sqrt(area)) from every landmark.
+ShapeFeatures with_landmarks(const TriangleMesh& mesh,
+                             ShapeFeatures features,
+                             const std::vector<int>& landmarks,
+                             double clearance = 0.08);
+
 }  // namespace crosspatch

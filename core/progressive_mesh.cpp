@@ -6,8 +6,8 @@
 #include <OpenMesh/Tools/Decimater/DecimaterT.hh>
 #include <OpenMesh/Tools/Decimater/ModNormalFlippingT.hh>
 #include <OpenMesh/Tools/Decimater/ModProgMeshT.hh>
-#include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <numeric>
 
@@ -42,6 +42,39 @@ OmMesh to_openmesh(const MatrixX3d& V, const MatrixX3i& F) {
   return om;
 }
 
+/// Prefers collapses that leave short edges and faces near equilateral, so that every level is an
+/// even, isotropic sampling: maps are optimised on it, and slivers would stop them.
+template <class MeshT>
+class ModIsotropicT : public OpenMesh::Decimater::ModBaseT<MeshT> {
+ public:
+  DECIMATING_MODULE(ModIsotropicT, MeshT, Isotropic);
+
+  explicit ModIsotropicT(MeshT& mesh) : Base(mesh, false) {}
+
+  /// The largest squared edge over quality of the faces that would be left around ci.v1.
+  float collapse_priority(const CollapseInfo& ci) override {
+    double worst = 0;
+    for (const auto f : Base::mesh().vf_range(ci.v0)) {
+      Vector3d corner[3];
+      bool lost = false;
+      int k = 0;
+      for (const auto v : Base::mesh().fv_range(f)) {
+        lost = lost || v == ci.v1;
+        const auto p = v == ci.v0 ? ci.p1 : Base::mesh().point(v);
+        corner[k++] = {p[0], p[1], p[2]};
+      }
+      if (lost) continue;
+      const Vector3d u = corner[1] - corner[0], v = corner[2] - corner[0], w = v - u;
+      const double longest = std::max({u.squaredNorm(), v.squaredNorm(), w.squaredNorm()});
+      const double quality = 2 * std::sqrt(3.0) * u.cross(v).norm() /
+                             (u.squaredNorm() + v.squaredNorm() + w.squaredNorm());
+      constexpr double kLeastQuality = 1e-3;
+      worst = std::max(worst, longest / std::max(quality, kLeastQuality));
+    }
+    return static_cast<float>(worst);
+  }
+};
+
 using CollapseList = std::vector<std::pair<int, int>>;
 
 /// The collapses (removed, kept) that bring the mesh down to `vertices`, cheapest first; vertices
@@ -54,11 +87,10 @@ CollapseList decimate(const MatrixX3d& V,
   OmMesh om = to_openmesh(V, F);
   for (int v : locked) om.status(om.vertex_handle(static_cast<unsigned>(v))).set_locked(true);
   OpenMesh::Decimater::DecimaterT<OmMesh> decimater(om);
-  OpenMesh::Decimater::ModQuadricT<OmMesh>::Handle quadric;
+  ModIsotropicT<OmMesh>::Handle isotropic;
   OpenMesh::Decimater::ModProgMeshT<OmMesh>::Handle history;
   OpenMesh::Decimater::ModNormalFlippingT<OmMesh>::Handle turning;
-  decimater.add(quadric);
-  decimater.module(quadric).unset_max_err();
+  decimater.add(isotropic);
   decimater.add(history);
   if (keep_normals) {
     decimater.add(turning);
@@ -231,6 +263,10 @@ Result<MeshLevel> mesh_level(const TriangleMesh& mesh,
                              int vertices) {
   Refinement refinement(progressive);
   while (!refinement.done() && refinement.vertex_count() < vertices) refinement.split();
+  return mesh_level(mesh, refinement);
+}
+
+Result<MeshLevel> mesh_level(const TriangleMesh& mesh, const Refinement& refinement) {
   MatrixX3i F = refinement.compact_faces();
   std::vector<int> level_vertex(at(mesh.vertex_count()), -1);
   MeshLevel level;

@@ -88,5 +88,7 @@ struct MeshLevel {
 Result<MeshLevel> mesh_level(const TriangleMesh& mesh,
                              const ProgressiveMesh& progressive,
                              int vertices);
+/// The level a walk has got to.
+Result<MeshLevel> mesh_level(const TriangleMesh& mesh, const Refinement& refinement);
 
 }  // namespace crosspatch

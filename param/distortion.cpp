@@ -40,18 +40,29 @@ SingularDerivatives both_ways_derivatives(double s1, double s2) {
           ((1 + p) * q.twist + q.energy) / 2};
 }
 
-constexpr double kAreaWeight = 1.0 / 10;  ///< of log(s1 s2)^2 in kNearlyConformal
+/// What kNearlyConformal adds for a scale of areas exp(L), with its derivatives in L.
+struct ScalePenalty {
+  explicit ScalePenalty(double L) {
+    constexpr double kSquare = 1.0 / 200, kReach = 16;
+    const double q = L / kReach;
+    value = kSquare * L * L + q * q * q * q;
+    first = 2 * kSquare * L + 4 * q * q * q / kReach;
+    second = 2 * kSquare + 12 * q * q / (kReach * kReach);
+  }
+  double value, first, second;
+};
 
 SingularDerivatives nearly_conformal_derivatives(double s1, double s2) {
-  const double p = s1 * s2, log = std::log(p), w = 2 * kAreaWeight;
-  return {s1 / s2 + s2 / s1 + kAreaWeight * log * log,
-          1 / s2 - s2 / (s1 * s1) + w * log / s1,
-          1 / s1 - s1 / (s2 * s2) + w * log / s2,
-          2 * s2 / (s1 * s1 * s1) + w * (1 - log) / (s1 * s1),
-          2 * s1 / (s2 * s2 * s2) + w * (1 - log) / (s2 * s2),
-          -1 / (s1 * s1) - 1 / (s2 * s2) + w / p,
-          (1 - w * log) / p + (s1 * s1 + p + s2 * s2) / (p * p),
-          (1 + w * log) / p - (s1 * s1 - p + s2 * s2) / (p * p)};
+  const double p = s1 * s2;
+  const ScalePenalty scale(std::log(p));
+  return {s1 / s2 + s2 / s1 + scale.value,
+          1 / s2 - s2 / (s1 * s1) + scale.first / s1,
+          1 / s1 - s1 / (s2 * s2) + scale.first / s2,
+          2 * s2 / (s1 * s1 * s1) + (scale.second - scale.first) / (s1 * s1),
+          2 * s1 / (s2 * s2 * s2) + (scale.second - scale.first) / (s2 * s2),
+          -1 / (s1 * s1) - 1 / (s2 * s2) + scale.second / p,
+          (1 - scale.first) / p + (s1 * s1 + p + s2 * s2) / (p * p),
+          (1 + scale.first) / p - (s1 * s1 - p + s2 * s2) / (p * p)};
 }
 
 }  // namespace
@@ -69,8 +80,7 @@ double distortion(Distortion distortion,
   if (distortion == Distortion::kSymmetricDirichlet) return G.trace() * (1 + 1 / det);
   if (distortion == Distortion::kBothWays)
     return G.trace() * (1 + 1 / det) * (1 + std::sqrt(det)) / 2;
-  const double log = std::log(det) / 2;
-  return G.trace() / std::sqrt(det) + kAreaWeight * log * log;
+  return G.trace() / std::sqrt(det) + ScalePenalty(std::log(det) / 2).value;
 }
 
 IsotropicHessian isotropic_hessian(const Eigen::Matrix2d& J, Distortion distortion) {

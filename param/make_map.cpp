@@ -1,10 +1,12 @@
 #include "param/make_map.hpp"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "core/curvature.hpp"
 #include "param/overlay.hpp"
 #include "param/sphere_refinement.hpp"
 #include "param/unfold.hpp"
@@ -34,20 +36,22 @@ class SphereMap {
   SphereMap(const Shape& source,
             const Shape& target,
             const std::vector<Landmark>& landmarks,
-            const MapOptions& options)
+            const MapOptions& options,
+            Eigen::MatrixXd source_fields,
+            Eigen::MatrixXd target_fields)
       : source_(source),
         target_(target),
         options_(options),
+        source_fields_(std::move(source_fields)),
+        target_fields_(std::move(target_fields)),
         level_(source.progressive),
         Y_(target.X),
-        lift_(target.mesh, Y_) {
+        lift_(target.mesh, Y_, &target_fields_) {
     X_ = MatrixX3d::Zero(source.mesh.vertex_count(), 3);
     hint_.assign(at(source.mesh.vertex_count()), 0);
-    fixed_.assign(hint_.size(), false);
     for (const Landmark& l : landmarks) {
       landmarks_.push_back(l);
       pinned_.push_back(l.source_vertex);
-      fixed_[at(l.source_vertex)] = true;
     }
   }
 
@@ -62,10 +66,8 @@ class SphereMap {
     while (level_.vertex_count() < a.mesh.vertex_count()) level_.split();
     SphereProblem problem = make_sphere_problem(level_.compact_faces(), source_.mesh.V, pinned_);
     hold_against_target(problem);
-    if ((unfold(problem, X_) > 0 && !collapse_turned_faces(X_, fixed_, level_)) ||
-        degree(level_.compact_faces(), X_) != 1)
-      return fail(ErrorCode::kNoCorrespondence,
-                  "map: the initial map cannot be untangled on the sphere");
+    if (Status s = untangle(problem); !s) return s;
+    if (level_.vertex_count() == a.mesh.vertex_count()) smooth_on_sphere(problem, X_);
     return {};
   }
 
@@ -79,11 +81,29 @@ class SphereMap {
     }
   }
 
+  /// Goes to the full mesh. Its vertices lie in the level's faces in the source's own embedding,
+  /// and keep their places in them; what turns over by that is unfolded.
   Status refine() {
+    const auto level = mesh_level(source_.mesh, level_);
+    if (!level) return tl::unexpected(level.error());
+    const MatrixX3d own = source_.X(level->vertex, Eigen::all),
+                    image = X_(level->vertex, Eigen::all);
+    const MeshLift in_level(level->mesh, own);
+    int face = 0;
+    for (int v = 0; v < source_.mesh.vertex_count(); ++v) {
+      if (!level_.faces(v).empty()) continue;
+      const SurfacePoint p = in_level.surface_point(source_.X.row(v).transpose(), face);
+      Vector3d x = Vector3d::Zero();
+      for (int k = 0; k < 3; ++k) x += p.bary[k] * image.row(level->mesh.F(p.face, k)).transpose();
+      X_.row(v) = x.normalized().transpose();
+    }
+    level_ = Refinement(full_level(source_.mesh));
+    SphereProblem problem = make_sphere_problem(source_.mesh.F, source_.mesh.V, pinned_);
+    hold_against_target(problem);
+    if (Status s = untangle(problem); !s) return s;
     const RefineOptions options{
         .until_vertices = source_.mesh.vertex_count(),
         .pinned = pinned_,
-        .growth = 1.4,
         .optimizer = {.max_iterations = 10, .relative_decrease = 2e-3, .barrier = kBarrier}};
     if (Status s = refine_on_sphere(level_, source_.mesh.V, lift_, options, X_, hint_); !s)
       return s;
@@ -150,6 +170,17 @@ class SphereMap {
                    .transpose();
   }
 
+  /// Turns faces back, and where that does not help collapses vertices of the level.
+  Status untangle(const SphereProblem& problem) {
+    if (unfold(problem, X_) > 0 && !collapse_turned_faces(X_, problem.fixed, level_))
+      return fail(ErrorCode::kNoCorrespondence,
+                  "map: the initial map cannot be untangled on the sphere");
+    if (const int d = degree(level_.compact_faces(), X_); d != 1)
+      return fail(ErrorCode::kNoCorrespondence,
+                  fmt::format("map: the initial map covers the target {} times", d));
+    return {};
+  }
+
   /// Lets go of the landmarks that only decided the homotopy class. True if there were any.
   bool release() {
     const size_t before = pinned_.size();
@@ -162,6 +193,8 @@ class SphereMap {
   void descend(int iterations) {
     SphereProblem problem = make_sphere_problem(level_.compact_faces(), source_.mesh.V, pinned_);
     hold_against_target(problem);
+    problem.fields = &source_fields_;
+    problem.field_weight = options_.field_weight;
     optimize_on_sphere(
         problem,
         lift_,
@@ -193,12 +226,12 @@ class SphereMap {
   const Shape& source_;
   const Shape& target_;
   const MapOptions& options_;
+  const Eigen::MatrixXd source_fields_, target_fields_;  ///< curvatures
   Refinement level_;
   MatrixX3d Y_;  ///< the target's embedding
   MeshLift lift_;
   MatrixX3d X_;
   std::vector<int> hint_;
-  std::vector<bool> fixed_;
   std::vector<Landmark> landmarks_;
   std::vector<int> pinned_;  ///< source vertices that may not move
 };
@@ -210,7 +243,13 @@ Result<MapResult> optimize_map(const Shape& source,
                                const InitialMap& initial,
                                const std::vector<Landmark>& landmarks,
                                const MapOptions& options) {
-  SphereMap sphere(source, target, landmarks, options);
+  Result<Eigen::MatrixXd> fields[2] = {Eigen::MatrixXd(), Eigen::MatrixXd()};
+  tbb::parallel_for(
+      0, 2, [&](int i) { fields[i] = curvature_fields(i == 0 ? source.mesh : target.mesh); });
+  for (const auto& field : fields)
+    if (!field) return tl::unexpected(field.error());
+  SphereMap sphere(
+      source, target, landmarks, options, std::move(*fields[0]), std::move(*fields[1]));
   if (Status s = sphere.start(initial); !s) return tl::unexpected(s.error());
   sphere.optimize_coarse();
   if (Status s = sphere.refine(); !s) return tl::unexpected(s.error());

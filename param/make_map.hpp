@@ -11,6 +11,8 @@ namespace crosspatch {
 struct MapOptions {
   int coarse_iterations = 60;  ///< most steps per stage of the optimisation on the coarse level
   int fine_iterations = 40;    ///< the same on the full mesh
+  /// Weight of the agreement of curvatures: see SphereProblem::field_weight.
+  double field_weight = 0.6;
 };
 
 struct MapResult {

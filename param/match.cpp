@@ -20,28 +20,24 @@ Result<std::pair<T, T>> both(Make make) {
   return std::pair<T, T>(std::move(*a), std::move(*b));
 }
 
-/// The given landmarks with each proposed assignment of tips that does not contradict them.
+/// The given landmarks, alone and with each proposed assignment of the other tips.
 std::vector<Candidate> make_candidates(const ShapeFeatures& source,
                                        const ShapeFeatures& target,
                                        const std::vector<Landmark>& given,
-                                       const ProposalOptions& options) {
+                                       ProposalOptions options) {
   std::vector<Candidate> candidates;
+  if (given.size() >= 2) candidates.push_back({given});
+  options.fixed = static_cast<int>(given.size());
   for (const TipAssignment& assignment :
        propose(tip_descriptors(source), tip_descriptors(target), options)) {
-    Candidate found;
+    Candidate candidate{given};
     for (const auto& [i, j] : assignment.pairs)
-      found.landmarks.push_back({source.tips[static_cast<size_t>(i)].vertex,
-                                 target.tips[static_cast<size_t>(j)].vertex,
-                                 false});
-    const Candidate fixed{given};
-    if (contradicts(found, fixed)) continue;
-    Candidate joined = fixed;
-    for (const Landmark& l : found.landmarks)
-      if (std::none_of(given.begin(), given.end(), [&](const Landmark& g) {
-            return g.source_vertex == l.source_vertex;
-          }))
-        joined.landmarks.push_back(l);
-    if (joined.landmarks.size() >= 2) candidates.push_back(std::move(joined));
+      if (i >= options.fixed)
+        candidate.landmarks.push_back({source.tips[static_cast<size_t>(i)].vertex,
+                                       target.tips[static_cast<size_t>(j)].vertex,
+                                       false});
+    if (candidate.landmarks.size() >= std::max<size_t>(2, given.size() + 1))
+      candidates.push_back(std::move(candidate));
   }
   return candidates;
 }
@@ -67,8 +63,15 @@ Result<MatchedMap> match_and_map(const TriangleMesh& source,
   std::vector<Candidate> candidates{{given}};
   if (static_cast<int>(given.size()) < options.enough_landmarks) {
     stage("features");
-    const auto features = both<ShapeFeatures>(
-        [&](int i) { return compute_features(i == 0 ? source : target, options.features); });
+    const auto features = both<ShapeFeatures>([&](int i) {
+      const TriangleMesh& mesh = i == 0 ? source : target;
+      std::vector<int> vertices;
+      for (const Landmark& l : given)
+        vertices.push_back(i == 0 ? l.source_vertex : l.target_vertex);
+      return compute_features(mesh, options.features).map([&](ShapeFeatures found) {
+        return with_landmarks(mesh, std::move(found), vertices);
+      });
+    });
     if (!features) return tl::unexpected(features.error());
     candidates = make_candidates(features->first, features->second, given, options.proposal);
     if (candidates.empty())

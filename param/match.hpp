@@ -15,8 +15,9 @@ struct MatchOptions {
   JudgeOptions judge = {};
   MapOptions map = {};
   ShapeOptions shape = {};
-  /// This many landmarks decide the map alone; fewer are joined with proposed tips.
-  int enough_landmarks = 3;
+  /// This many landmarks decide the map alone; fewer are joined with proposed tips, so that no limb
+  /// is left without a guide.
+  int enough_landmarks = 16;
   /// Called with the name of each stage when it begins; may be empty.
   std::function<void(const std::string&)> progress = {};
 };

@@ -1,10 +1,10 @@
 // Projected Newton steps for symmetric Dirichlet energies of triangulations that move on the sphere
 // and are judged after a lift.
 //
-// Notation: a vertex x moves by x + B t with B (3 x 2) an orthonormal basis of its tangent plane;
-// its lifted point moves by L B t with L the lift's derivative. In the plane of a lifted face (axes
-// P, 2 x 3) the Jacobian from the rest face is J = P [y1 - y0, y2 - y0] D, D the inverse rest
-// edges.
+// Notation: a vertex has coordinates t in a frame (3 x 2) of the tangent plane at its lifted point,
+// and goes straight ahead on the lift's surface: steps feel the surface's own metric, not the kinks
+// of the lift. In the plane of a lifted face (axes P, 2 x 3) the Jacobian from the rest face is J =
+// P [y1 - y0, y2 - y0] D, D the inverse rest edges.
 #include "param/sphere_optimizer.hpp"
 
 #include <tbb/parallel_for.h>
@@ -34,14 +34,6 @@ size_t at(int i) {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-Matrix32 tangent_basis(const Vector3d& x) {
-  const Vector3d axis = std::abs(x[0]) < 0.6 ? Vector3d::UnitX() : Vector3d::UnitY();
-  Matrix32 b;
-  b.col(0) = x.cross(axis).normalized();
-  b.col(1) = x.cross(b.col(0));
-  return b;
-}
-
 /// Hessian and gradient of one face in the six tangent coordinates of its corners.
 struct FaceSystem {
   Matrix6 H;
@@ -60,6 +52,9 @@ class Optimizer {
     reference_ = problem.reference_orientation;
     total_area_ = problem.rest_area.sum();
     build_pattern();
+    vertex_area_ = Eigen::VectorXd::Zero(X.rows());
+    for (int f = 0; f < problem.F.rows(); ++f)
+      for (int k = 0; k < 3; ++k) vertex_area_[problem.F(f, k)] += problem.rest_area[f] / 3;
   }
 
   SphereOptimizerReport run() {
@@ -70,7 +65,7 @@ class Optimizer {
     // Common steps move whole limbs; where kinks of the lift or squeezed faces stop them, single
     // vertices still get on.
     int failures = 0;
-    constexpr int kMostFailures = 2, kSweeps = 3;
+    constexpr int kMostFailures = 4, kSweeps = 1;
     for (; report.iterations < options_.max_iterations; ++report.iterations) {
       if (options_.distortion == Distortion::kNearlyConformal) {
         refer_to_chords();
@@ -121,7 +116,29 @@ class Optimizer {
                               {corner(X, f, 0), corner(X, f, 1), corner(X, f, 2)},
                               {corner(Y, f, 0), corner(Y, f, 1), corner(Y, f, 2)});
     });
-    return energy.sum() / total_area_;
+    double fields = 0;
+    if (problem_.fields != nullptr)
+      for (int v = 0; v < X.rows(); ++v)
+        if (unknown_[at(v)] >= 0) fields += field_energy(v, X.row(v).transpose(), hint[at(v)]);
+    return (energy.sum() + fields) / total_area_;
+  }
+
+  /// Disagreement of the fields at one vertex, weighted.
+  [[nodiscard]] double field_energy(int v, const Vector3d& x, int face) const {
+    if (problem_.fields == nullptr) return 0;
+    return problem_.field_weight * vertex_area_[v] *
+           (lift_.values(x, face) - problem_.fields->row(v).transpose()).squaredNorm();
+  }
+
+  /// Adds it to the quadratic model in v's coordinates (Gauss-Newton).
+  void add_fields(int v, Eigen::Matrix2d& H, Vector2d& g) const {
+    if (problem_.fields == nullptr) return;
+    const int face = hint_[at(v)];
+    const Lift::Rates R = lift_.rates(face);
+    const double weight = 2 * problem_.field_weight * vertex_area_[v] / total_area_;
+    H += weight * R.transpose() * R;
+    g += weight * R.transpose() *
+         (lift_.values(X_.row(v).transpose(), face) - problem_.fields->row(v).transpose());
   }
 
   /// Energy of one face, weighted, with its corners at x on the sphere and y on the surface.
@@ -143,9 +160,7 @@ class Optimizer {
 
   void step_alone(int v) {
     const Vector3d x = X_.row(v).transpose();
-    const Matrix32 basis = tangent_basis(x);
-    basis_[at(v)] = basis;
-    tangent_[at(v)] = lift_.derivative(x, hint_[at(v)]) * basis;
+    frame_[at(v)] = lift_.frame(x, hint_[at(v)]);
     Eigen::Matrix2d H = Eigen::Matrix2d::Zero();
     Vector2d g = Vector2d::Zero();
     for (int f : faces_of(v)) {
@@ -154,16 +169,17 @@ class Optimizer {
       H += s.H.block<2, 2>(2 * k, 2 * k);
       g += s.g.segment<2>(2 * k);
     }
+    add_fields(v, H, g);
     const Vector2d step = -H.ldlt().solve(g);
     if (!step.allFinite()) return;
-    const double energy = star_energy(v, x, Y_.row(v).transpose());
+    const double energy = star_energy(v, x, Y_.row(v).transpose(), hint_[at(v)]);
     constexpr int kHalvings = 5;
     double t = 1;
     for (int i = 0; i < kHalvings; ++i, t /= 2) {
-      const Vector3d moved = (x + t * basis * step).normalized();
       int face = hint_[at(v)];
+      const Vector3d moved = lift_.walk(x, face, t * frame_[at(v)].on_surface * step);
       const Vector3d y = lift_.point(moved, face);
-      if (!(star_energy(v, moved, y) < energy)) continue;
+      if (!(star_energy(v, moved, y, face) < energy)) continue;
       X_.row(v) = moved.transpose();
       Y_.row(v) = y.transpose();
       hint_[at(v)] = face;
@@ -171,8 +187,8 @@ class Optimizer {
     }
   }
 
-  [[nodiscard]] double star_energy(int v, const Vector3d& x, const Vector3d& y) const {
-    double sum = 0;
+  [[nodiscard]] double star_energy(int v, const Vector3d& x, const Vector3d& y, int face) const {
+    double sum = field_energy(v, x, face);
     for (int f : faces_of(v)) {
       std::array<Vector3d, 3> xs, ys;
       for (int k = 0; k < 3; ++k) {
@@ -207,7 +223,7 @@ class Optimizer {
     Eigen::Matrix<double, 4, 6> G = Eigen::Matrix<double, 4, 6>::Zero();
     for (int k = 0; k < 3; ++k) {
       if ((corners >> k & 1) == 0) continue;
-      const Eigen::Matrix2d M = P * tangent_[at(problem_.F(f, k))];
+      const Eigen::Matrix2d M = P * frame_[at(problem_.F(f, k))].on_surface;
       // How the edge matrix E follows corner k.
       const Eigen::RowVector2d s = k == 0   ? Eigen::RowVector2d(-1, -1)
                                    : k == 1 ? Eigen::RowVector2d(1, 0)
@@ -230,7 +246,7 @@ class Optimizer {
     Vector6 ddet;
     for (int k = 0; k < 3; ++k)
       ddet.segment<2>(2 * k) =
-          basis_[at(problem_.F(f, k))].transpose() * x[(k + 1) % 3].cross(x[(k + 2) % 3]);
+          frame_[at(problem_.F(f, k))].on_sphere.transpose() * x[(k + 1) % 3].cross(x[(k + 2) % 3]);
     const Vector6 dr = -0.5 * std::sqrt(b) / det * ddet;
     s.H += 2 * dr * dr.transpose();
     s.g += 2 * std::sqrt(b) * dr;
@@ -269,8 +285,7 @@ class Optimizer {
     H_.makeCompressed();
     solver_.analyzePattern(H_);
     gradient_.resize(2 * n);
-    basis_.resize(at(vertices));
-    tangent_.resize(at(vertices));
+    frame_.resize(at(vertices));
     systems_.resize(at(static_cast<int>(problem_.F.rows())));
   }
 
@@ -283,12 +298,15 @@ class Optimizer {
   void assemble() {
     tbb::parallel_for(0, static_cast<int>(X_.rows()), [&](int v) {
       if (!active_[at(v)]) return;
-      const Vector3d x = X_.row(v).transpose();
-      basis_[at(v)] = tangent_basis(x);
-      tangent_[at(v)] = lift_.derivative(x, hint_[at(v)]) * basis_[at(v)];
+      frame_[at(v)] = lift_.frame(X_.row(v).transpose(), hint_[at(v)]);
     });
-    tbb::parallel_for(
-        0, static_cast<int>(problem_.F.rows()), [&](int f) { systems_[at(f)] = face_system(f); });
+    energy_.resize(problem_.F.rows());
+    tbb::parallel_for(0, static_cast<int>(problem_.F.rows()), [&](int f) {
+      systems_[at(f)] = face_system(f);
+      energy_[f] = face_energy(f,
+                               {corner(X_, f, 0), corner(X_, f, 1), corner(X_, f, 2)},
+                               {corner(Y_, f, 0), corner(Y_, f, 1), corner(Y_, f, 2)});
+    });
     std::fill(H_.valuePtr(), H_.valuePtr() + H_.nonZeros(), 0.0);
     gradient_.setZero();
     for (int f = 0; f < problem_.F.rows(); ++f) {
@@ -306,48 +324,66 @@ class Optimizer {
         }
       }
     }
+    if (problem_.fields != nullptr) assemble_fields();
+  }
+
+  void assemble_fields() {
+    for (int v = 0; v < X_.rows(); ++v) {
+      const int i = unknown_[at(v)];
+      if (i < 0) continue;
+      Eigen::Matrix2d H = Eigen::Matrix2d::Zero();
+      Vector2d g = Vector2d::Zero();
+      add_fields(v, H, g);
+      gradient_.segment<2>(i) += g;
+      for (int p = 0; p < 2; ++p)
+        for (int q = 0; q <= p; ++q) entry(i + p, i + q) += H(p, q);
+    }
   }
 
   bool solve() {
-    // Rotations of the sphere leave some energies unchanged: a relative shift keeps the
-    // factorisation definite.
-    double trace = 0;
-    for (int i = 0; i < H_.cols(); ++i) trace += H_.coeff(i, i);
-    const double shift = 1e-9 * trace / std::max<double>(1, static_cast<double>(H_.cols()));
-    for (int i = 0; i < H_.cols(); ++i) entry(i, i) += shift;
+    // Rotations of the sphere and slides of symmetric surfaces leave some energies unchanged.
+    for (int i = 0; i < H_.cols(); ++i) entry(i, i) += damping_;
     solver_.factorize(H_);
     if (solver_.info() != Eigen::Success) return false;
     step_ = solver_.solve(-gradient_);
     return step_.allFinite();
   }
 
-  /// The state after `t` times the step. Vertices of faces that would lose most of their
-  /// orientation go a smaller part of the way: a few squeezed faces must not stop everybody.
+  /// The state after `t` times the step. Vertices of faces that would become much worse go a
+  /// smaller part of the way: a few squeezed faces must not stop everybody.
   [[nodiscard]] MatrixX3d advance(double t) const {
-    constexpr int kRounds = 8;
-    constexpr double kKeep = 0.1;
-    MatrixX3d X = X_;
+    constexpr int kRounds = 24, kHalvings = 5;  // then they stay where they are
+    constexpr double kWorse = 1.05, kSlack = 2;
+    const int faces = static_cast<int>(problem_.F.rows());
+    MatrixX3d X = X_, Y = Y_;
     std::vector<double> part(at(static_cast<int>(X_.rows())), t);
+    std::vector<char> moves(part.size(), 1);
     for (int round = 0; round < kRounds; ++round) {
-      for (int v = 0; v < X_.rows(); ++v) {
+      tbb::parallel_for(0, static_cast<int>(X_.rows()), [&](int v) {
         const int u = unknown_[at(v)];
-        if (u < 0) continue;
-        const Vector3d d = basis_[at(v)] * step_.segment<2>(u);
-        X.row(v) = (X_.row(v).transpose() + part[at(v)] * d).normalized().transpose();
-      }
-      std::vector<bool> squeezed(part.size(), false);
+        if (u < 0 || moves[at(v)] == 0) return;
+        const Vector3d d = part[at(v)] * frame_[at(v)].on_surface * step_.segment<2>(u);
+        int face = hint_[at(v)];
+        X.row(v) = lift_.walk(X_.row(v).transpose(), face, d).transpose();
+        Y.row(v) = lift_.point(X.row(v).transpose(), face).transpose();
+      });
+      std::vector<char> worse(at(faces), 0);
+      tbb::parallel_for(0, faces, [&](int f) {
+        const double after = face_energy(f,
+                                         {corner(X, f, 0), corner(X, f, 1), corner(X, f, 2)},
+                                         {corner(Y, f, 0), corner(Y, f, 1), corner(Y, f, 2)});
+        worse[at(f)] = after > kWorse * energy_[f] + kSlack * problem_.rest_area[f] ? 1 : 0;
+      });
+      std::fill(moves.begin(), moves.end(), 0);
       bool any = false;
-      for (int f = 0; f < problem_.F.rows(); ++f) {
-        const double before =
-            sphere_orientation(corner(X_, f, 0), corner(X_, f, 1), corner(X_, f, 2));
-        if (sphere_orientation(corner(X, f, 0), corner(X, f, 1), corner(X, f, 2)) > kKeep * before)
-          continue;
-        any = true;
-        for (int k = 0; k < 3; ++k) squeezed[at(problem_.F(f, k))] = true;
-      }
+      for (int f = 0; f < faces; ++f)
+        if (worse[at(f)] != 0) {
+          any = true;
+          for (int k = 0; k < 3; ++k) moves[at(problem_.F(f, k))] = 1;
+        }
       if (!any) break;
       for (size_t v = 0; v < part.size(); ++v)
-        if (squeezed[v]) part[v] /= 2;
+        if (moves[v] != 0) part[v] = round < kHalvings ? part[v] / 2 : 0;
     }
     return X;
   }
@@ -356,19 +392,23 @@ class Optimizer {
   /// Returns the new energy, or the old one if no step does.
   double line_search(double energy) {
     MatrixX3d Y = Y_;
-    constexpr int kHalvings = 12;
+    constexpr int kHalvings = 8;
+    constexpr double kLeast = 1e-5, kMost = 10, kFactor = 8;  // of the damping
     double t = 1;
     for (int i = 0; i < kHalvings; ++i, t /= 2) {
       const MatrixX3d X = advance(t);
       std::vector<int> hint = hint_;
       const double e = evaluate(X, hint, Y);
       if (e < energy) {
+        if (i == 0) damping_ = std::max(kLeast, damping_ / kFactor);
+        if (i > 1) damping_ = std::min(kMost, damping_ * kFactor);
         X_ = X;
         Y_ = Y;
         hint_ = std::move(hint);
         return e;
       }
     }
+    damping_ = std::min(kMost, damping_ * kFactor * kFactor);
     return energy;
   }
 
@@ -380,11 +420,14 @@ class Optimizer {
   MatrixX3d Y_;
   Eigen::VectorXd reference_;  ///< of the barrier
   double total_area_ = 1;
+  Eigen::VectorXd vertex_area_;  ///< a third of the faces around each vertex
   std::vector<bool> active_;
   std::vector<int> faces_begin_, faces_;  ///< faces around each vertex
   std::vector<int> unknown_;
-  std::vector<Matrix32> basis_, tangent_;
+  std::vector<Lift::Frame> frame_;  ///< per vertex
   std::vector<FaceSystem> systems_;
+  double damping_ = 1e-2;   ///< of the steps; diagonal entries of a good map's Hessian are about 30
+  Eigen::VectorXd energy_;  ///< per face, where the systems were assembled
   SparseMatrix H_;
   Eigen::VectorXd gradient_, step_;
   Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower> solver_;

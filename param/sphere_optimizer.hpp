@@ -18,6 +18,10 @@ struct SphereProblem {
   /// sets that of a face with its share of the sphere's area.
   Eigen::VectorXd reference_orientation;
   std::vector<bool> fixed;  ///< per vertex
+  /// Fields the lift's fields should agree with (#V x fields; not owned), or none; `field_weight`
+  /// times the area-weighted mean of the squared differences is added to the energy.
+  const Eigen::MatrixXd* fields = nullptr;
+  double field_weight = 0;
 };
 
 /// The faces `F` with the shapes they have in `V`; slivers are thickened to a height of a fiftieth

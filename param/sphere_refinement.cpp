@@ -154,6 +154,39 @@ std::vector<int> vertices_above(const SphereProblem& problem,
   return vertices;
 }
 
+/// Gives the faces within a few edges of v better shapes on the sphere, whatever they become on the
+/// surface.
+void make_room(const Refinement& level,
+               const MatrixX3d& V,
+               int v,
+               const std::vector<int>& pinned,
+               MatrixX3d& X) {
+  constexpr int kRings = 3;
+  std::vector<int> inner{v};
+  for (int i = 1; i < kRings; ++i) {
+    const std::vector<int> ring = inner;
+    for (const int u : ring) {
+      const std::vector<int> more = level.neighbours(u);
+      inner.insert(inner.end(), more.begin(), more.end());
+    }
+    std::sort(inner.begin(), inner.end());
+    inner.erase(std::unique(inner.begin(), inner.end()), inner.end());
+  }
+  std::vector<int> faces;
+  for (const int u : inner) faces.insert(faces.end(), level.faces(u).begin(), level.faces(u).end());
+  std::sort(faces.begin(), faces.end());
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  SphereProblem problem = make_sphere_problem(level.F()(faces, Eigen::all), V, pinned);
+  for (const int u : problem.F.reshaped())
+    if (!std::binary_search(inner.begin(), inner.end(), u)) problem.fixed[at(u)] = true;
+  std::vector<int> unused(at(static_cast<int>(X.rows())), 0);
+  optimize_on_sphere(problem,
+                     SphereLift(),
+                     {.distortion = Distortion::kNearlyConformal, .max_iterations = 20},
+                     X,
+                     unused);
+}
+
 /// A regular tetrahedron for the four vertices of the coarsest level.
 Status place_tetrahedron(const Refinement& refinement, MatrixX3d& X) {
   const MatrixX3i F = refinement.compact_faces();
@@ -200,13 +233,25 @@ Status refine_on_sphere(Refinement& refinement,
                         MatrixX3d& X,
                         std::vector<int>& hint) {
   Placer placer(refinement, V, lift, options.optimizer.distortion, X, hint);
+  // Where a kernel is too thin for doubles its surroundings make room.
+  const auto split = [&] {
+    constexpr int kTries = 4;
+    int v = refinement.split();
+    for (int i = 0; i < kTries; ++i) {
+      const int kept = refinement.last_kept();
+      if (placer.place(v, kept)) return true;
+      refinement.collapse(v, kept);
+      make_room(refinement, V, kept, options.pinned, X);
+      v = refinement.split();
+    }
+    return placer.place(v, refinement.last_kept());
+  };
   int optimised_at = refinement.vertex_count();
   while (!refinement.done() && refinement.vertex_count() < options.until_vertices) {
-    const int v = refinement.split();
-    if (!placer.place(v, refinement.last_kept()))
+    if (!split())
       return fail(ErrorCode::kNumerical,
-                  fmt::format("spherical embedding: no place for vertex {} at level {}",
-                              v,
+                  fmt::format("spherical embedding: no place beside vertex {} at level {}",
+                              refinement.last_kept(),
                               refinement.vertex_count()));
     const int n = refinement.vertex_count();
     const bool last = refinement.done() || n >= options.until_vertices;

@@ -35,19 +35,38 @@ class Unfolder {
         unknown_[at(v)] = 2 * static_cast<int>(free_.size());
         free_.push_back(v);
       }
+    for (int f = 0; f < problem.F.rows(); ++f)
+      if (unknown_[at(problem.F(f, 0))] >= 0 || unknown_[at(problem.F(f, 1))] >= 0 ||
+          unknown_[at(problem.F(f, 2))] >= 0)
+        faces_.push_back(f);
+    F_ = problem.F(faces_, Eigen::all);
+    covered_ = covered_area(F_, X);
   }
 
   int run() {
-    constexpr int kMostIterations = 200;
+    constexpr int kMostIterations = 60;
     epsilon_ = 1;
     lower_epsilon(1);
-    for (int i = 0; i < kMostIterations && turned_faces(problem_.F, X_) > 0; ++i) {
+    for (int i = 0; i < kMostIterations && turned_faces(F_, X_) > 0; ++i) {
       const double before = energy(X_);
       const double after = step(before);
       if (!(after < before)) break;
       lower_epsilon(after / before);
     }
-    return turned_faces(problem_.F, X_);
+    return turned_faces(F_, X_);
+  }
+
+  /// Improves shapes where no face is turned: the energy is a barrier then.
+  void smooth() {
+    constexpr int kMostIterations = 20;
+    epsilon_ = 0;
+    double before = energy(X_);
+    for (int i = 0; i < kMostIterations; ++i) {
+      const double after = step(before);
+      constexpr double kWorthwhile = 1e-2;
+      if (!(after < (1 - kWorthwhile) * before)) break;
+      before = after;
+    }
   }
 
  private:
@@ -62,7 +81,7 @@ class Unfolder {
   /// Their Eq. (4): the barrier follows the worst face.
   void lower_epsilon(double energy_ratio) {
     double worst = std::numeric_limits<double>::infinity();
-    for (int f = 0; f < problem_.F.rows(); ++f) worst = std::min(worst, area_ratio(X_, f));
+    for (const int f : faces_) worst = std::min(worst, area_ratio(X_, f));
     const double sigma = std::max(1 - energy_ratio, 0.1), mu = (1 - sigma) * chi(worst);
     constexpr double kLeast = 1e-10;
     epsilon_ = worst < mu ? 2 * std::sqrt(mu * (mu - worst)) : kLeast;
@@ -108,7 +127,7 @@ class Unfolder {
 
   [[nodiscard]] double energy(const MatrixX3d& X) const {
     double sum = 0;
-    for (int f = 0; f < problem_.F.rows(); ++f) sum += residuals(X, f, nullptr).squaredNorm();
+    for (const int f : faces_) sum += residuals(X, f, nullptr).squaredNorm();
     return sum;
   }
 
@@ -118,7 +137,7 @@ class Unfolder {
     std::vector<Eigen::Triplet<double>> entries;
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
     double trace = 0;
-    for (int f = 0; f < problem_.F.rows(); ++f) {
+    for (const int f : faces_) {
       Matrix86 D = Matrix86::Zero();
       const Residuals r = residuals(X_, f, &D);
       const Eigen::Matrix<double, 6, 6> H = D.transpose() * D;
@@ -150,8 +169,9 @@ class Unfolder {
                     t * basis(X_.row(v).transpose()) * direction.segment<2>(unknown_[at(v)]))
                        .normalized()
                        .transpose();
+      // A long step may drag a face around the back of the sphere.
       const double e = energy(X);
-      if (!(e < before)) continue;
+      if (!(e > 0 && e < before) || std::abs(covered_area(F_, X) - covered_) > 1) continue;
       X_ = X;
       return e;
     }
@@ -162,15 +182,61 @@ class Unfolder {
   MatrixX3d& X_;
   std::vector<int> unknown_;  ///< per vertex: its first coordinate's unknown, or -1
   std::vector<int> free_;
+  std::vector<int> faces_;  ///< that can move
+  MatrixX3i F_;             ///< their corners
+  double covered_ = 0;      ///< area they cover on the sphere, signed; steps by 4 pi only
   double epsilon_ = 1;
   bool analyzed_ = false;
   Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower> solver_;
 };
 
+bool turned(const MatrixX3i& F, const MatrixX3d& X, int f) {
+  return !(sphere_orientation(X.row(F(f, 0)).transpose(),
+                              X.row(F(f, 1)).transpose(),
+                              X.row(F(f, 2)).transpose()) > 0);
+}
+
+/// Fixes the vertices more than `rings` edges away from turned faces.
+void hold_far_vertices(const MatrixX3d& X, int rings, SphereProblem& problem) {
+  std::vector<bool> near(problem.fixed.size(), false);
+  for (int f = 0; f < problem.F.rows(); ++f)
+    if (turned(problem.F, X, f))
+      for (int k = 0; k < 3; ++k) near[at(problem.F(f, k))] = true;
+  for (int i = 0; i < rings; ++i) {
+    std::vector<bool> grown = near;
+    for (int f = 0; f < problem.F.rows(); ++f)
+      if (near[at(problem.F(f, 0))] || near[at(problem.F(f, 1))] || near[at(problem.F(f, 2))])
+        for (int k = 0; k < 3; ++k) grown[at(problem.F(f, k))] = true;
+    near = std::move(grown);
+  }
+  for (const int v : problem.F.reshaped())
+    if (!near[at(v)]) problem.fixed[at(v)] = true;
+}
+
 }  // namespace
 
 int unfold(const SphereProblem& problem, MatrixX3d& X) {
-  return Unfolder(problem, X).run();
+  constexpr int kMostRings = 8;
+  int left = turned_faces(problem.F, X);
+  MatrixX3d best = X;
+  for (int rings = 2; left > 0 && rings <= kMostRings; rings *= 2) {
+    SphereProblem near = problem;
+    hold_far_vertices(X, rings, near);
+    MatrixX3d moved = X;
+    Unfolder unfolder(near, moved);
+    if (unfolder.run() == 0) unfolder.smooth();
+    const int turned = turned_faces(problem.F, moved);
+    if (turned < left) {
+      left = turned;
+      best = moved;
+    }
+  }
+  X = best;
+  return left;
+}
+
+void smooth_on_sphere(const SphereProblem& problem, MatrixX3d& X) {
+  Unfolder(problem, X).smooth();
 }
 
 }  // namespace crosspatch

@@ -12,4 +12,8 @@ namespace crosspatch {
 /// lines of code", Eqs. (2)-(4) with their rule for epsilon; here by Gauss-Newton steps.
 int unfold(const SphereProblem& problem, MatrixX3d& X);
 
+/// Lowers the same energy without epsilon, a barrier, over all free rows of an embedding: evens out
+/// squeezed parts. Precondition: no face is turned over.
+void smooth_on_sphere(const SphereProblem& problem, MatrixX3d& X);
+
 }  // namespace crosspatch

@@ -127,12 +127,16 @@ int turned_faces(const MatrixX3i& F, const MatrixX3d& X) {
   return count;
 }
 
-int degree(const MatrixX3i& F, const MatrixX3d& X) {
+double covered_area(const MatrixX3i& F, const MatrixX3d& X) {
   double covered = 0;
   for (int f = 0; f < F.rows(); ++f)
     covered += solid_angle(
         X.row(F(f, 0)).transpose(), X.row(F(f, 1)).transpose(), X.row(F(f, 2)).transpose());
-  return static_cast<int>(std::lround(covered / (4 * std::numbers::pi)));
+  return covered;
+}
+
+int degree(const MatrixX3i& F, const MatrixX3d& X) {
+  return static_cast<int>(std::lround(covered_area(F, X) / (4 * std::numbers::pi)));
 }
 
 bool collapse_turned_faces(const MatrixX3d& X, const std::vector<bool>& fixed, Refinement& level) {

@@ -9,6 +9,9 @@ namespace crosspatch {
 /// Number of faces with det(x0, x1, x2) <= 0.
 int turned_faces(const MatrixX3i& F, const MatrixX3d& X);
 
+/// Area of the unit sphere that the faces cover, turned ones counted negative.
+double covered_area(const MatrixX3i& F, const MatrixX3d& X);
+
 /// How often the faces cover the sphere, counted with their signs: 1 for an embedding. Where no
 /// face is turned over and the degree is 1, the triangulation is an embedding.
 int degree(const MatrixX3i& F, const MatrixX3d& X);

@@ -106,6 +106,16 @@ TEST(Candidates, SwappingTheSurfacesSwapsThePairs) {
   for (size_t i = 0; i < there.size(); ++i) EXPECT_NEAR(there[i].cost, back[i].cost, 1e-12);
 }
 
+TEST(Candidates, KeepFixedTipsTogether) {
+  const auto list = propose(scattered(6, 3), scattered(5, 4), {.keep = 1000, .fixed = 2});
+  ASSERT_FALSE(list.empty());
+  for (const TipAssignment& assignment : list) {
+    EXPECT_EQ(assignment.pairs[0], std::pair(0, 0));
+    EXPECT_EQ(assignment.pairs[1], std::pair(1, 1));
+  }
+  expect_well_formed(list, 6, 5);
+}
+
 TEST(Candidates, OfADeformedCreatureHoldTheTruthEarly) {
   const TriangleMesh a = shapes::creature(3), b = shapes::creature(3, 1.25);
   const ShapeFeatures source = compute_features(a).value(), target = compute_features(b).value();

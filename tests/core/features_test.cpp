@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/creatures.hpp"
+#include "core/geodesics.hpp"
 
 namespace crosspatch {
 namespace {
@@ -50,6 +51,22 @@ TEST(Features, DoNotDependOnScaleRotationOrVertexNumbers) {
     EXPECT_NEAR(a.tips[i].persistence, b.tips[i].persistence, 1e-6);  // solver tolerance
   }
   EXPECT_LT((a.tip_distances - b.tip_distances.colwise().reverse()).norm(), 1e-9);  // rounding
+}
+
+TEST(Features, TakeLandmarksForTheTipsNextToThem) {
+  const TriangleMesh mesh = shapes::creature(3);
+  const ShapeFeatures features = compute_features(mesh).value();
+  const int tip = features.tips[1].vertex;
+  int beside = -1;
+  for_each_outgoing(mesh, tip, [&](int h) { beside = mesh.to(h); });
+  const double edge = geodesic_distances(mesh, {tip})(beside, 0) / std::sqrt(total_area(mesh));
+  const ShapeFeatures joined = with_landmarks(mesh, features, {beside}, 2 * edge);
+  ASSERT_EQ(joined.tips.size(), features.tips.size());
+  EXPECT_EQ(joined.tips[0].vertex, beside);
+  for (size_t i = 0; i < joined.tips.size(); ++i) {
+    EXPECT_NE(joined.tips[i].vertex, tip);
+    EXPECT_EQ(joined.tip_distances(joined.tips[i].vertex, static_cast<Eigen::Index>(i)), 0);
+  }
 }
 
 TEST(Features, RefuseATriangle) {
