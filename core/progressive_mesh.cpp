@@ -71,7 +71,10 @@ class ModIsotropicT : public OpenMesh::Decimater::ModBaseT<MeshT> {
       constexpr double kLeastQuality = 1e-3;
       worst = std::max(worst, longest / std::max(quality, kLeastQuality));
     }
-    return static_cast<float>(worst);
+    // Stars of many faces have thin kernels.
+    constexpr double kManyEdges = 9;
+    const double edges = Base::mesh().valence(ci.v0) + Base::mesh().valence(ci.v1) - 4.0;
+    return static_cast<float>(worst * std::pow(std::max(1.0, edges / kManyEdges), 4));
   }
 };
 

@@ -43,7 +43,7 @@ SingularDerivatives both_ways_derivatives(double s1, double s2) {
 /// What kNearlyConformal adds for a scale of areas exp(L), with its derivatives in L.
 struct ScalePenalty {
   explicit ScalePenalty(double L) {
-    constexpr double kSquare = 1.0 / 200, kReach = 16;
+    constexpr double kSquare = 1.0 / 200, kReach = 10;
     const double q = L / kReach;
     value = kSquare * L * L + q * q * q * q;
     first = 2 * kSquare * L + 4 * q * q * q / kReach;

@@ -3,8 +3,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 
 namespace crosspatch {
@@ -87,30 +89,83 @@ Result<Judgement> judge(const Shape& source,
                         const JudgeOptions& options) {
   const ChainPlanner planner(source, target);
   DiscCache source_discs(source), target_discs(target);
+  std::vector<std::vector<Trial>> trials(candidates.size());  // by distortion
+  std::vector<size_t> order(candidates.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  const auto distortion = [&](size_t c) {
+    return trials[c].empty() ? kInfinity : trials[c][0].distortion;
+  };
+  // Tries the first `last` candidates in the order and sorts them.
   const auto evaluate = [&](size_t last, int chains) {
-    std::vector<Trial> trials =
-        run_trials(planner, candidates, last, chains, source_discs, target_discs);
-    for (size_t c = 0; c < last; ++c) candidates[c].distortion = kInfinity;
-    for (const Trial& t : trials)
-      candidates[t.candidate].distortion =
-          std::min(candidates[t.candidate].distortion, t.distortion);
-    std::stable_sort(
-        candidates.begin(),
-        candidates.begin() + static_cast<std::ptrdiff_t>(last),
-        [](const Candidate& a, const Candidate& b) { return a.distortion < b.distortion; });
+    std::vector<Candidate> tried;
+    for (size_t i = 0; i < last; ++i) tried.push_back(candidates[order[i]]);
+    for (size_t i = 0; i < last; ++i) trials[order[i]].clear();
+    for (Trial& t : run_trials(planner, tried, last, chains, source_discs, target_discs))
+      if (t.distortion < kInfinity) trials[order[t.candidate]].push_back(std::move(t));
+    for (size_t i = 0; i < last; ++i)
+      std::stable_sort(trials[order[i]].begin(),
+                       trials[order[i]].end(),
+                       [](const Trial& x, const Trial& y) { return x.distortion < y.distortion; });
+    std::stable_sort(order.begin(),
+                     order.begin() + static_cast<std::ptrdiff_t>(last),
+                     [&](size_t x, size_t y) { return distortion(x) < distortion(y); });
   };
   evaluate(candidates.size(), options.chains);
   const size_t finalists = std::min(candidates.size(), static_cast<size_t>(options.finalists));
   evaluate(finalists, options.final_chains);
-  if (candidates.empty() || candidates[0].distortion == kInfinity)
+  Judgement judgement;
+  for (const size_t c : order) {
+    candidates[c].distortion = distortion(c);
+    judgement.ranking.push_back(candidates[c]);
+  }
+  for (size_t chain = 0; chain < static_cast<size_t>(options.final_chains); ++chain)
+    for (size_t i = 0; i < finalists; ++i)
+      if (const auto& tried = trials[order[i]];
+          chain < tried.size() && judgement.finals.size() < static_cast<size_t>(options.finals))
+        judgement.finals.push_back({i,
+                                    {*source_discs.find(tried[chain].source_chain),
+                                     *target_discs.find(tried[chain].target_chain),
+                                     tried[chain].distortion}});
+  if (judgement.finals.empty())
     return fail(ErrorCode::kNoCorrespondence, "judge: no candidate has a bijective map");
-  auto winner = initial_map(source, target, candidates[0].landmarks, options.final_chains);
-  if (!winner) return tl::unexpected(winner.error());
-  Judgement judgement{std::move(candidates), std::move(*winner), kInfinity};
-  for (const Candidate& c : judgement.ranking)
-    if (contradicts(c, judgement.ranking[0]))
-      judgement.margin = std::min(judgement.margin, c.distortion - judgement.ranking[0].distortion);
   return judgement;
+}
+
+Result<Verdict> play_finals(const Shape& source,
+                            const Shape& target,
+                            Judgement judgement,
+                            const MapOptions& options) {
+  const size_t count = judgement.finals.size();
+  std::vector<std::unique_ptr<SphereMap>> maps(count);
+  std::vector<double> energy(count, kInfinity);
+  std::vector<Status> started(count);
+  tbb::parallel_for(size_t{0}, count, [&](size_t i) {
+    const Final& final = judgement.finals[i];
+    auto map = std::make_unique<SphereMap>(
+        source, target, judgement.ranking[final.candidate].landmarks, options);
+    started[i] = map->start(final.initial);
+    if (!started[i]) return;
+    energy[i] = std::log(map->optimize_coarse()) + map->coarse_distortion();
+    maps[i] = std::move(map);
+  });
+  for (Candidate& c : judgement.ranking) c.energy = kInfinity;
+  for (size_t i = 0; i < count; ++i) {
+    double& least = judgement.ranking[judgement.finals[i].candidate].energy;
+    least = std::min(least, energy[i]);
+  }
+  const size_t best =
+      static_cast<size_t>(std::min_element(energy.begin(), energy.end()) - energy.begin());
+  if (maps[best] == nullptr) return tl::unexpected(started[0].error());
+  // What leads to the same map in the end is no rival.
+  constexpr double kSameMap = 0.05;
+  double margin = kInfinity;
+  for (size_t i = 0; i < count; ++i)
+    if (maps[i] != nullptr && maps[best]->coarse_distance(*maps[i]) > kSameMap)
+      margin = std::min(margin, energy[i] - energy[best]);
+  std::stable_sort(judgement.ranking.begin(),
+                   judgement.ranking.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.energy < b.energy; });
+  return Verdict{std::move(judgement.ranking), std::move(maps[best]), margin};
 }
 
 }  // namespace crosspatch

@@ -1,8 +1,9 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
-#include "param/make_map.hpp"
+#include "param/sphere_map.hpp"
 
 namespace crosspatch {
 
@@ -10,22 +11,29 @@ namespace crosspatch {
 struct Candidate {
   std::vector<Landmark> landmarks;
   double distortion = 0;  ///< disc_distortion of the best chain; infinite if none could be cut
+  /// What is left when the coarse map is optimised: the logarithm of its energy plus its
+  /// SphereMap::coarse_distortion. Infinite without a map; see play_finals.
+  double energy = 0;
 };
 
 struct JudgeOptions {
   int chains = 2;     ///< tried for every candidate; Source: one to five change the winner in a few
                       ///< percent of pairs
-  int finalists = 8;  ///< tried again with `final_chains`
-  int final_chains = 12;  ///< see MapOptions::chains
+  int finalists = 6;  ///< tried again with `final_chains`
+  int final_chains = 12;
+  /// Initial maps that go to the finals: the best of every finalist and, while there is room, maps
+  /// along their other chains, which may belong to other homotopy classes.
+  int finals = 8;
+};
+
+struct Final {
+  std::size_t candidate;  ///< its place in the ranking
+  InitialMap initial;
 };
 
 struct Judgement {
   std::vector<Candidate> ranking;  ///< by distortion (ties by order given)
-  InitialMap winner;               ///< that of ranking[0]
-  /// Distortion of the best candidate that contradicts the winner (sends a landmark elsewhere)
-  /// minus the winner's; infinite if there is none. Above 0.1 the winner was right in 111 of 111
-  /// trial pairs.
-  double margin = 0;
+  std::vector<Final> finals;
 };
 
 /// Builds the unoptimised bijective map of every candidate on the coarse levels and ranks them by
@@ -36,6 +44,23 @@ Result<Judgement> judge(const Shape& source,
                         const Shape& target,
                         std::vector<Candidate> candidates,
                         const JudgeOptions& options = {});
+
+/// What the finals decide.
+struct Verdict {
+  std::vector<Candidate> ranking;     ///< finalists by energy, then the others by distortion
+  std::unique_ptr<SphereMap> winner;  ///< that of ranking[0], optimised on the coarse level
+  /// Energy of the best final whose map is another one (by more than 0.05 sqrt(area) in the mean)
+  /// minus the winner's; infinite if there is none.
+  double margin = 0;
+};
+
+/// Optimises the coarse maps of the finalists and ranks them by what is left of the energy: the
+/// unoptimised map tells what is wrong by far, the optimised one what is better.
+/// kNoCorrespondence if none can be optimised. Shapes must outlive the verdict.
+Result<Verdict> play_finals(const Shape& source,
+                            const Shape& target,
+                            Judgement judgement,
+                            const MapOptions& options);
 
 /// Whether two candidates send some source vertex, or bring to some target vertex, different
 /// partners.

@@ -1,28 +1,20 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
-#include "param/initial_map.hpp"
 #include "param/map_quality.hpp"
+#include "param/sphere_map.hpp"
 
 namespace crosspatch {
-
-struct MapOptions {
-  int coarse_iterations = 60;  ///< most steps per stage of the optimisation on the coarse level
-  int fine_iterations = 40;    ///< the same on the full mesh
-  /// Weight of the agreement of curvatures: see SphereProblem::field_weight.
-  double field_weight = 0.6;
-};
 
 struct MapResult {
   SurfaceMap map;  ///< of shape.mesh to shape.mesh
   MapQuality quality;
-  double initial_distortion = 0;
 };
 
-/// The bijective map that takes every landmark exactly to its partner and has (locally) least
-/// symmetric Dirichlet energy. The homotopy class is that of `initial`.
+/// Brings a map whose coarse level is optimised to the full meshes: the bijective map that takes
+/// every pinned landmark exactly to its partner and has (locally) least energy.
+Result<MapResult> finish_map(SphereMap& coarse, const Shape& source, const Shape& target);
+
+/// All stages, for one initial map. The homotopy class is that of `initial`.
 Result<MapResult> optimize_map(const Shape& source,
                                const Shape& target,
                                const InitialMap& initial,

@@ -92,14 +92,13 @@ Result<MatchedMap> match_and_map(const TriangleMesh& source,
   stage("judging");
   auto judgement = judge(shapes->first, shapes->second, std::move(candidates), options.judge);
   if (!judgement) return tl::unexpected(judgement.error());
+  stage("finals");
+  auto verdict = play_finals(shapes->first, shapes->second, std::move(*judgement), options.map);
+  if (!verdict) return tl::unexpected(verdict.error());
   stage("map");
-  auto result = optimize_map(shapes->first,
-                             shapes->second,
-                             judgement->winner,
-                             judgement->ranking[0].landmarks,
-                             options.map);
+  auto result = finish_map(*verdict->winner, shapes->first, shapes->second);
   if (!result) return tl::unexpected(result.error());
-  return MatchedMap{std::move(judgement->ranking), judgement->margin, std::move(*result)};
+  return MatchedMap{std::move(verdict->ranking), verdict->margin, std::move(*result)};
 }
 
 }  // namespace crosspatch

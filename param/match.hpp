@@ -6,6 +6,7 @@
 
 #include "core/candidates.hpp"
 #include "param/judge.hpp"
+#include "param/make_map.hpp"
 
 namespace crosspatch {
 
@@ -24,8 +25,8 @@ struct MatchOptions {
 
 /// A map with all that led to it.
 struct MatchedMap {
-  std::vector<Candidate> ranking;  ///< by the judge; ranking[0] was mapped
-  double margin = 0;               ///< Judgement::margin; infinite where landmarks left no choice
+  std::vector<Candidate> ranking;  ///< by the finals and the judge; ranking[0] was mapped
+  double margin = 0;               ///< Verdict::margin; infinite where landmarks left no choice
   MapResult result;
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/curvature.hpp"
 #include "param/sphere_refinement.hpp"
 
 namespace crosspatch {
@@ -22,7 +23,13 @@ Result<Shape> make_shape(TriangleMesh mesh,
   if (!coarse) return tl::unexpected(coarse.error());
   auto X = embed_in_sphere(mesh, *progressive);
   if (!X) return tl::unexpected(X.error());
-  return Shape{std::move(mesh), std::move(*progressive), std::move(*coarse), std::move(*X)};
+  auto curvature = curvature_fields(mesh);
+  if (!curvature) return tl::unexpected(curvature.error());
+  return Shape{std::move(mesh),
+               std::move(*progressive),
+               std::move(*coarse),
+               std::move(*X),
+               std::move(*curvature)};
 }
 
 }  // namespace crosspatch

@@ -13,6 +13,7 @@ struct Shape {
   ProgressiveMesh progressive;  ///< its levels
   MeshLevel coarse;  ///< the level on which candidate maps are judged; holds every landmark
   MatrixX3d X;       ///< #V x 3, its embedding in the unit sphere
+  Eigen::MatrixXd curvature;  ///< #V x fields, see curvature_fields
 };
 
 struct ShapeOptions {

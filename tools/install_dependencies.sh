@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # install_dependencies.sh [GROUP...]: installs what is missing from Debian 12.
-#   build  compiler and libraries
+#   build  compiler and libraries (openimageio-tools: the CMake files of the library ask for them)
 #   demo   jq, to read the report
 #   test   Node.js and Chromium, for outside readers of glTF
 #   check  clang-format and clang-tidy
@@ -9,7 +9,7 @@ set -euo pipefail
 
 build=(cmake ninja-build g++
        libopenmesh-dev libeigen3-dev libspectra-dev libceres-dev libsuitesparse-dev libopenblas-dev
-       libtinygltf-dev libopenimageio-dev libcli11-dev libfmt-dev libspdlog-dev nlohmann-json3-dev
+       libtinygltf-dev libopenimageio-dev openimageio-tools libcli11-dev libfmt-dev libspdlog-dev nlohmann-json3-dev
        libtbb-dev libnanoflann-dev libexpected-dev libboost-dev libgtest-dev libgmock-dev
        libbenchmark-dev)
 demo=(jq)

@@ -221,8 +221,16 @@ TEST(Judge, PrefersTheTruthToSwappedLimbs) {
   ASSERT_TRUE(judgement) << judgement.error().message;
   for (std::size_t i = 0; i < 4; ++i)
     EXPECT_EQ(judgement->ranking[0].landmarks[i].target_vertex, tips_b[i]);
-  EXPECT_GT(judgement->margin, 0);
+  ASSERT_GT(judgement->finals.size(), 1u);
+  EXPECT_LT(judgement->ranking[0].distortion, judgement->ranking[1].distortion);
   EXPECT_TRUE(contradicts(judgement->ranking[0], judgement->ranking[1]));
+
+  const auto verdict = play_finals(*source, *target, *judgement, MapOptions{});
+  ASSERT_TRUE(verdict) << verdict.error().message;
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_EQ(verdict->ranking[0].landmarks[i].target_vertex, tips_b[i]);
+  EXPECT_GT(verdict->margin, 0.1);
+  EXPECT_EQ(verdict->ranking.size(), candidates.size());
 }
 
 TEST(MakeMap, FindsTheSameSurfaceInAnotherTriangulation) {

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <vector>
+
+#include "param/initial_map.hpp"
+#include "param/sphere_optimizer.hpp"
+#include "param/surface_map.hpp"
+
+namespace crosspatch {
+
+struct MapOptions {
+  int coarse_iterations = 60;  ///< most steps per stage of the optimisation on the coarse level
+  int fine_iterations = 40;    ///< the same on the full mesh
+  /// Weight of the agreement of curvatures: see SphereProblem::field_weight. 0.3 to 1 do about
+  /// equally well; without it maps of isometric bodies slide along and around limbs (mean error 3.8
+  /// from 2.5 and 1.7 from 1.2 on two FAUST pairs, 3.8 from 2.1 on a SMAL pair).
+  double field_weight = 0.6;
+};
+
+/// The source's triangulation on the target's sphere, from the coarse level to the full mesh. The
+/// stages are called in the order of their declaration.
+class SphereMap {
+ public:
+  /// All arguments must outlive the map. Pinned landmarks stay exact; the others only decide the
+  /// homotopy class and are released on the coarse level.
+  SphereMap(const Shape& source,
+            const Shape& target,
+            const std::vector<Landmark>& landmarks,
+            const MapOptions& options);
+  SphereMap(const SphereMap&) = delete;
+  SphereMap& operator=(const SphereMap&) = delete;
+
+  /// The coarse level by way of the discs, unfolded. kNoCorrespondence where it stays turned over.
+  Status start(const InitialMap& initial);
+  /// Optimises the coarse level; returns its energy: mean distortion of both ways (isometry: 4)
+  /// plus the weighted disagreement of curvatures.
+  double optimize_coarse();
+  /// Area-weighted mean logarithm of the distortion of the coarse map, of both directions: the
+  /// inverse is looked at at the target's coarse vertices, because a protrusion that one face
+  /// swallows is not seen from its corners.
+  [[nodiscard]] double coarse_distortion() const;
+  /// Mean distance on the surface, measured straight through space, between the images of the
+  /// coarse vertices under this coarse map and another one of the same two surfaces.
+  [[nodiscard]] double coarse_distance(const SphereMap& other) const;
+  /// Goes to the full mesh and optimises it. Errors of start and refine_on_sphere.
+  Status refine();
+  /// Lets the target's vertices move under the same energy of the inverse map, and then the
+  /// source's again: each side only sees what happens at its own vertices.
+  void settle();
+  /// The common subdivision; vertices in special position are moved by a billionth of their edges.
+  Result<SurfaceMap> overlay();
+
+ private:
+  /// Turns faces back, and where that does not help collapses vertices of the level.
+  Status untangle(const SphereProblem& problem);
+  /// Lets go of the landmarks that only decided the homotopy class. True if there were any.
+  bool release();
+  double descend(int iterations);
+  /// A face that lies where the target is packed densely on the sphere may be as small as that.
+  void hold_against_target(SphereProblem& problem);
+
+  const Shape& source_;
+  const Shape& target_;
+  const MapOptions& options_;
+  std::vector<Landmark> landmarks_;
+  Refinement level_;
+  MatrixX3d Y_;  ///< the target's embedding
+  MeshLift lift_;
+  MatrixX3d X_;  ///< places of the source's vertices
+  std::vector<int> hint_;
+  std::vector<int> pinned_;  ///< source vertices that may not move
+};
+
+}  // namespace crosspatch
