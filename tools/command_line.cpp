@@ -145,11 +145,18 @@ CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
   command->add_option("-o,--output", arguments.output, "Textured TARGET to write")
       ->required()
       ->type_name("GLB");
+  command
+      ->add_option("--texture",
+                   arguments.pair.files.texture,
+                   "What the source wears: a PNG or JPEG over its texture coordinates, a painted "
+                   "'checker' or 'uv' (over them too), or colours by 'position' [its own]")
+      ->type_name("FILE|checker|uv|position");
   add_pair(*command, arguments.pair);
   command->footer(
       "\nExamples:\n"
       "  crosspatch transfer cow.obj camel.off --output camel.glb\n"
       "  crosspatch transfer cow.obj camel.off --landmarks pairs.txt --output camel.glb\n"
+      "  crosspatch transfer cow.obj camel.off --texture hide.png --output camel.glb\n"
       "  crosspatch render camel.glb --output camel.png");
   return command;
 }

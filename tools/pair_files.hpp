@@ -9,6 +9,7 @@ struct PairFiles {
   std::string source;
   std::string target;
   std::string landmarks;  ///< file of corresponding vertices; empty = none
+  std::string texture;    ///< what the source wears, see give_texture; empty = its own
 };
 
 }  // namespace crosspatch

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "tools/source_texture.hpp"
+
 namespace crosspatch {
 namespace {
 
@@ -102,6 +104,9 @@ Result<PairRun> read_pair(const PairFiles& files, Progress& progress) {
   Result<InputMesh> source = read_stage("source", files.source, progress);
   if (!source) return tl::unexpected(source.error());
   run.source = std::move(*source);
+  if (!files.texture.empty())
+    if (Status s = give_texture(files.texture, run.source.soup); !s)
+      return tl::unexpected(s.error());
   Result<InputMesh> target = read_stage("target", files.target, progress);
   if (!target) return tl::unexpected(target.error());
   run.target = std::move(*target);

@@ -18,7 +18,7 @@ enum class LastStage { kMap, kTransfer };
 
 /// The largest number of stages that report progress.
 constexpr int stage_count(LastStage last) {
-  return last == LastStage::kMap ? 6 : 7;
+  return last == LastStage::kMap ? 7 : 8;
 }
 
 /// All that a run over a pair has made, stage by stage; later stages are empty where it stopped
