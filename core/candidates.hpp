@@ -29,7 +29,7 @@ struct TipAssignment {
 
 struct ProposalOptions {
   /// Assignments returned.
-  int keep = 60;
+  int keep = 150;
   /// Part of `keep` for assignments that leave out no tip, the rest for those that leave out one;
   /// what one class cannot fill goes to the other. Measured: the truth is among the first 20 of the
   /// first class, and of the second among the first 20 in 27 and the first 40 in 29 of 32 pairs.

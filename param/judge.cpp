@@ -139,14 +139,26 @@ Result<Verdict> play_finals(const Shape& source,
   std::vector<std::unique_ptr<SphereMap>> maps(count);
   std::vector<double> energy(count, kInfinity);
   std::vector<Status> started(count);
+  const auto judge_by = [&](size_t i, double mean_energy) {
+    energy[i] = std::log(mean_energy) + maps[i]->coarse_distortion();
+  };
   tbb::parallel_for(size_t{0}, count, [&](size_t i) {
     const Final& final = judgement.finals[i];
     auto map = std::make_unique<SphereMap>(
         source, target, judgement.ranking[final.candidate].landmarks, options);
     started[i] = map->start(final.initial);
     if (!started[i]) return;
-    energy[i] = std::log(map->optimize_coarse()) + map->coarse_distortion();
     maps[i] = std::move(map);
+    judge_by(i, maps[i]->optimize_roughly());
+  });
+  std::vector<size_t> last(count);
+  std::iota(last.begin(), last.end(), size_t{0});
+  std::stable_sort(
+      last.begin(), last.end(), [&](size_t i, size_t j) { return energy[i] < energy[j]; });
+  constexpr size_t kToTheEnd = 5;
+  last.resize(std::min(count, kToTheEnd));
+  tbb::parallel_for(size_t{0}, last.size(), [&](size_t k) {
+    if (maps[last[k]] != nullptr) judge_by(last[k], maps[last[k]]->optimize_coarse());
   });
   for (Candidate& c : judgement.ranking) c.energy = kInfinity;
   for (size_t i = 0; i < count; ++i) {

@@ -19,11 +19,11 @@ struct Candidate {
 struct JudgeOptions {
   int chains = 2;     ///< tried for every candidate; Source: one to five change the winner in a few
                       ///< percent of pairs
-  int finalists = 6;  ///< tried again with `final_chains`
+  int finalists = 12;  ///< tried again with `final_chains`
   int final_chains = 12;
   /// Initial maps that go to the finals: the best of every finalist and, while there is room, maps
   /// along their other chains, which may belong to other homotopy classes.
-  int finals = 8;
+  int finals = 14;
 };
 
 struct Final {
@@ -55,7 +55,8 @@ struct Verdict {
 };
 
 /// Optimises the coarse maps of the finalists and ranks them by what is left of the energy: the
-/// unoptimised map tells what is wrong by far, the optimised one what is better.
+/// unoptimised map tells what is wrong by far, the optimised one what is better. All are optimised
+/// roughly first, and only the best of them to the end.
 /// kNoCorrespondence if none can be optimised. Shapes must outlive the verdict.
 Result<Verdict> play_finals(const Shape& source,
                             const Shape& target,

@@ -19,6 +19,7 @@ Result<MapResult> optimize_map(const Shape& source,
                                const MapOptions& options) {
   SphereMap map(source, target, landmarks, options);
   if (Status s = map.start(initial); !s) return tl::unexpected(s.error());
+  map.optimize_roughly();
   map.optimize_coarse();
   return finish_map(map, source, target);
 }

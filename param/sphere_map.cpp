@@ -76,9 +76,13 @@ Status SphereMap::start(const InitialMap& initial) {
   return {};
 }
 
-double SphereMap::optimize_coarse() {
+double SphereMap::optimize_roughly() {
+  constexpr int kIterations = 5;
   relax_worst(level_, source_.mesh.V, lift_, pinned_, X_, hint_);
-  descend(options_.coarse_iterations);
+  return descend(kIterations);
+}
+
+double SphereMap::optimize_coarse() {
   relax_worst(level_, source_.mesh.V, lift_, pinned_, X_, hint_);
   const double energy = descend(options_.coarse_iterations);
   return release() ? descend(options_.coarse_iterations) : energy;

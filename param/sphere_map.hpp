@@ -32,8 +32,10 @@ class SphereMap {
 
   /// The coarse level by way of the discs, unfolded. kNoCorrespondence where it stays turned over.
   Status start(const InitialMap& initial);
-  /// Optimises the coarse level; returns its energy: mean distortion of both ways (isometry: 4)
-  /// plus the weighted disagreement of curvatures.
+  /// A few steps on the coarse level, landmarks held. Returns its energy: mean distortion of both
+  /// ways (isometry: 4) plus the weighted disagreement of curvatures.
+  double optimize_roughly();
+  /// Optimises the coarse level and releases the landmarks that are not pinned.
   double optimize_coarse();
   /// Area-weighted mean logarithm of the distortion of the coarse map, of both directions: the
   /// inverse is looked at at the target's coarse vertices, because a protrusion that one face
