@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "core/fill_holes.hpp"
+
 namespace crosspatch {
 namespace {
 
@@ -51,12 +53,11 @@ std::vector<int> side(const std::vector<Candidate>& candidates, int Landmark::*v
   return vertices;
 }
 
-}  // namespace
-
-Result<MatchedMap> match_and_map(const TriangleMesh& source,
-                                 const TriangleMesh& target,
-                                 const std::vector<Landmark>& given,
-                                 const MatchOptions& options) {
+/// The map of two closed surfaces of any area.
+Result<MatchedMap> match_closed(const TriangleMesh& source,
+                                const TriangleMesh& target,
+                                const std::vector<Landmark>& given,
+                                const MatchOptions& options) {
   const auto stage = [&](const char* name) {
     if (options.progress) options.progress(name);
   };
@@ -99,6 +100,30 @@ Result<MatchedMap> match_and_map(const TriangleMesh& source,
   auto result = finish_map(*verdict->winner, shapes->first, shapes->second);
   if (!result) return tl::unexpected(result.error());
   return MatchedMap{std::move(verdict->ranking), verdict->margin, std::move(*result)};
+}
+
+}  // namespace
+
+Result<MatchedMap> match_and_map(const TriangleMesh& source,
+                                 const TriangleMesh& target,
+                                 const std::vector<Landmark>& given,
+                                 const MatchOptions& options) {
+  const auto filled_source = fill_holes(source), filled_target = fill_holes(target);
+  if (!filled_source) return tl::unexpected(filled_source.error());
+  if (!filled_target) return tl::unexpected(filled_target.error());
+  auto matched = match_closed(
+      normalized(filled_source->mesh), normalized(filled_target->mesh), given, options);
+  if (!matched || !(filled_source->was_open() || filled_target->was_open())) return matched;
+  MapResult& result = matched->result;
+  result.map = without_caps(result.map, *filled_source, *filled_target);
+  result.quality = measure_map(result.map, source, target);
+  matched->holes = {filled_source->holes, filled_target->holes};
+  for (Candidate& candidate : matched->ranking)
+    std::erase_if(candidate.landmarks, [&](const Landmark& l) {
+      return l.source_vertex >= filled_source->vertex_count ||
+             l.target_vertex >= filled_target->vertex_count;
+    });
+  return matched;
 }
 
 }  // namespace crosspatch

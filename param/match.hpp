@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <string>
 #include <vector>
@@ -28,12 +29,15 @@ struct MatchedMap {
   std::vector<Candidate> ranking;  ///< by the finals and the judge; ranking[0] was mapped
   double margin = 0;               ///< Verdict::margin; infinite where landmarks left no choice
   MapResult result;
+  /// Boundary loops of the source and of the target, which were closed for the map and opened
+  /// again: with any, the map is one of parts.
+  std::array<int, 2> holes{0, 0};
 };
 
-/// Finds the map of two closed surfaces of genus 0 and area 1: proposes assignments of their tips,
-/// judges them by their bijective maps and optimises the winner. `given` landmarks are exact in the
-/// result; found ones are released in the end. kNoCorrespondence: another topology, or no candidate
-/// has a map. Other errors are those of the stages.
+/// Finds the map of two surfaces of genus 0: closes their boundary loops, proposes assignments of
+/// their tips, judges them by their bijective maps and optimises the winner. `given` landmarks are
+/// exact in the result; found ones are released in the end. kNoCorrespondence: another topology, or
+/// no candidate has a map. Other errors are those of the stages.
 Result<MatchedMap> match_and_map(const TriangleMesh& source,
                                  const TriangleMesh& target,
                                  const std::vector<Landmark>& given,

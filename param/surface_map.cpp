@@ -61,10 +61,14 @@ Status check_polygons(const SurfaceMap& map, const TriangleMesh& a, const Triang
   return {};
 }
 
-}  // namespace
-
-Status validate(const SurfaceMap& map, const TriangleMesh& source, const TriangleMesh& target) {
-  if (Status s = check_polygons(map, source, target); !s) return s;
+/// Number of edges of a map of which every side is used once in each direction, or, where `ends`
+/// says so, once: it is told whether the side lies on a boundary of the source and of the target.
+template <class Ends>
+Result<int> check_sides(const SurfaceMap& map,
+                        const TriangleMesh& source,
+                        const TriangleMesh& target,
+                        Ends ends) {
+  if (Status s = check_polygons(map, source, target); !s) return tl::unexpected(s.error());
   std::vector<std::pair<int, int>> sides;
   sides.reserve(map.corner.size());
   for (int p = 0; p < map.polygon_count(); ++p) {
@@ -80,14 +84,23 @@ Status validate(const SurfaceMap& map, const TriangleMesh& source, const Triangl
     const bool paired = std::binary_search(sides.begin(), sides.end(), std::pair(j, i));
     edges += !paired || i < j ? 1 : 0;
     if (paired) continue;
-    if (!on_boundary_edge(source, map.source[at(i)], map.source[at(j)]) ||
-        !on_boundary_edge(target, map.target[at(i)], map.target[at(j)]))
+    if (!ends(on_boundary_edge(source, map.source[at(i)], map.source[at(j)]),
+              on_boundary_edge(target, map.target[at(i)], map.target[at(j)])))
       return fail(ErrorCode::kInternal, fmt::format("surface map: side ({}, {}) is loose", i, j));
   }
+  return edges;
+}
+
+}  // namespace
+
+Status validate(const SurfaceMap& map, const TriangleMesh& source, const TriangleMesh& target) {
+  const auto edges = check_sides(
+      map, source, target, [](bool on_source, bool on_target) { return on_source && on_target; });
+  if (!edges) return tl::unexpected(edges.error());
   std::vector<bool> used(map.source.size(), false);
   for (int q : map.corner) used[at(q)] = true;
   const int points = static_cast<int>(std::count(used.begin(), used.end(), true));
-  const int euler = points - edges + map.polygon_count();
+  const int euler = points - *edges + map.polygon_count();
   if (euler != euler_characteristic(source) || euler != euler_characteristic(target))
     return fail(ErrorCode::kInternal,
                 fmt::format("surface map: Euler characteristic {} differs from {} and {}",
@@ -95,6 +108,41 @@ Status validate(const SurfaceMap& map, const TriangleMesh& source, const Triangl
                             euler_characteristic(source),
                             euler_characteristic(target)));
   return {};
+}
+
+Status validate_partial(const SurfaceMap& map,
+                        const TriangleMesh& source,
+                        const TriangleMesh& target) {
+  const auto edges = check_sides(
+      map, source, target, [](bool on_source, bool on_target) { return on_source || on_target; });
+  if (!edges) return tl::unexpected(edges.error());
+  return {};
+}
+
+SurfaceMap without_caps(const SurfaceMap& map, const FilledMesh& source, const FilledMesh& target) {
+  SurfaceMap part;
+  std::vector<int> kept(map.source.size(), -1);
+  for (int p = 0; p < map.polygon_count(); ++p) {
+    const int fa = map.source_face[at(p)], fb = map.target_face[at(p)];
+    if (fa >= source.face_count || fb >= target.face_count) continue;
+    for (int i = map.polygon_begin[at(p)]; i < map.polygon_begin[at(p) + 1]; ++i) {
+      const size_t q = at(map.corner[at(i)]);
+      if (kept[q] < 0) {
+        kept[q] = part.point_count();
+        part.source.push_back(in_face(source.mesh, map.source[q], fa));
+        part.target.push_back(in_face(target.mesh, map.target[q], fb));
+      }
+      part.corner.push_back(kept[q]);
+    }
+    part.polygon_begin.push_back(static_cast<int>(part.corner.size()));
+    part.source_face.push_back(fa);
+    part.target_face.push_back(fb);
+  }
+  for (int v = 0; v < source.vertex_count; ++v)
+    part.point_of_source_vertex.push_back(kept[at(map.point_of_source_vertex[at(v)])]);
+  for (int v = 0; v < target.vertex_count; ++v)
+    part.point_of_target_vertex.push_back(kept[at(map.point_of_target_vertex[at(v)])]);
+  return part;
 }
 
 SurfacePoint in_face(const TriangleMesh& mesh, const SurfacePoint& p, int face) {

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/fill_holes.hpp"
 #include "core/surface_point.hpp"
 
 namespace crosspatch {
@@ -35,6 +36,17 @@ struct SurfaceMap {
 /// direction or lies on a boundary of both meshes, and the overlay has the Euler characteristic of
 /// both.
 Status validate(const SurfaceMap& map, const TriangleMesh& source, const TriangleMesh& target);
+
+/// The same for a map of parts: what it covers it covers once, and where it ends the source or the
+/// target ends too.
+Status validate_partial(const SurfaceMap& map,
+                        const TriangleMesh& source,
+                        const TriangleMesh& target);
+
+/// The part of a map between closed surfaces that joins the open surfaces they were made from:
+/// polygons on a cap of either are left out, and with them the vertices whose images lie there
+/// (-1).
+SurfaceMap without_caps(const SurfaceMap& map, const FilledMesh& source, const FilledMesh& target);
 
 /// `p`, given in any face, with barycentric coordinates of `face`, which must hold it too (up to
 /// rounding: weight on a corner outside `face` is dropped and the rest rescaled).

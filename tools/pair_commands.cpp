@@ -12,6 +12,12 @@ namespace crosspatch {
 namespace {
 
 constexpr double kCoverageGate = 1 - 1e-9;  // rounding of summed areas
+/// What a map of surfaces with holes has to cover of both: they need not be the same holes.
+constexpr double kPartialCoverageGate = 0.9;
+
+bool is_partial(const MatchedMap& matched) {
+  return matched.holes[0] + matched.holes[1] > 0;
+}
 
 /// What makes a finished run end with kGateFailed, a sentence each.
 std::vector<std::string> gate_failures(const PairRun& run) {
@@ -19,13 +25,16 @@ std::vector<std::string> gate_failures(const PairRun& run) {
   std::vector<std::string> warnings;
   if (quality.flipped > 0)
     warnings.push_back(fmt::format("{} pieces of the map are turned over", quality.flipped));
-  if (quality.source_coverage < kCoverageGate || quality.target_coverage < kCoverageGate)
+  const bool partial = is_partial(run.matched);
+  const double gate = partial ? kPartialCoverageGate : kCoverageGate;
+  if (quality.source_coverage < gate || quality.target_coverage < gate)
     warnings.push_back(
         fmt::format("the map covers {:.2f} % of the source and {:.2f} % of the target",
                     100 * quality.source_coverage,
                     100 * quality.target_coverage));
-  const Status bijective =
-      validate(run.matched.result.map, run.source.prepared.mesh, run.target.prepared.mesh);
+  const TriangleMesh &source = run.source.prepared.mesh, &target = run.target.prepared.mesh;
+  const Status bijective = partial ? validate_partial(run.matched.result.map, source, target)
+                                   : validate(run.matched.result.map, source, target);
   if (!bijective) warnings.push_back("the map is not one-to-one: " + bijective.error().message);
   return warnings;
 }
@@ -74,6 +83,15 @@ RunReport pair_report(const PairArguments& arguments, const PairRun& run) {
   report.warnings = gate_failures(run);
   report.exit_code =
       static_cast<int>(report.warnings.empty() ? ExitCode::kDone : ExitCode::kGateFailed);
+  if (is_partial(run.matched))
+    report.warnings.push_back(
+        fmt::format("{} holes of the source and {} of the target were closed for the map and are "
+                    "no part of it: "
+                    "{:.2f} % of the source and {:.2f} % of the target are mapped",
+                    run.matched.holes[0],
+                    run.matched.holes[1],
+                    100 * run.matched.result.quality.source_coverage,
+                    100 * run.matched.result.quality.target_coverage));
   if (run.matched.margin < kSafeMargin)
     report.warnings.push_back(fmt::format(
         "the choice among the candidate maps is unsure, left and right may be exchanged: "

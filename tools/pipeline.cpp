@@ -44,10 +44,7 @@ Result<std::vector<Landmark>> read_landmarks(const std::string& path,
 Result<MatchedMap> find_map(const PairRun& run, Progress& progress) {
   MatchOptions options;
   options.progress = [&progress](const std::string& stage) { progress.begin(stage); };
-  return match_and_map(normalized(run.source.prepared.mesh),
-                       normalized(run.target.prepared.mesh),
-                       run.landmarks,
-                       options);
+  return match_and_map(run.source.prepared.mesh, run.target.prepared.mesh, run.landmarks, options);
 }
 
 std::string map_summary(const MatchedMap& matched) {

@@ -10,6 +10,7 @@
 #include "param/chain_disc.hpp"
 #include "param/judge.hpp"
 #include "param/make_map.hpp"
+#include "param/match.hpp"
 #include "param/overlay.hpp"
 #include "param/sphere_refinement.hpp"
 #include "param/unfold.hpp"
@@ -271,6 +272,63 @@ TEST(MakeShape, NamesATopologyItCannotMap) {
   EXPECT_EQ(shape.error().code, ErrorCode::kNoCorrespondence);
   EXPECT_EQ(shape.error().message,
             "surface: Euler characteristic 0 (genus 1), only spheres (2) can be mapped");
+}
+
+/// The faces of `mesh` whose corners all lie above z = height, over the vertices they use.
+TriangleMesh cut_below(const TriangleMesh& mesh, double height) {
+  std::vector<int> number(static_cast<std::size_t>(mesh.vertex_count()), -1);
+  std::vector<int> kept;
+  MatrixX3i F(mesh.face_count(), 3);
+  int rows = 0;
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    if (mesh.V(mesh.F.row(f), 2).minCoeff() <= height) continue;
+    for (int k = 0; k < 3; ++k) {
+      int& n = number[static_cast<std::size_t>(mesh.F(f, k))];
+      if (n < 0) {
+        n = static_cast<int>(kept.size());
+        kept.push_back(mesh.F(f, k));
+      }
+      F(rows, k) = n;
+    }
+    ++rows;
+  }
+  return make_mesh(mesh.V(kept, Eigen::all), F.topRows(rows)).value();
+}
+
+TEST(FillHoles, ClosesEveryLoopAndKeepsNumbers) {
+  const TriangleMesh open = cut_below(limbed(3), -0.1);
+  ASSERT_EQ(euler_characteristic(open), 1);
+  const FilledMesh filled = fill_holes(open).value();
+  EXPECT_EQ(filled.holes, 1);
+  EXPECT_EQ(euler_characteristic(filled.mesh), 2);
+  EXPECT_TRUE(boundary_loops(filled.mesh).empty());
+  EXPECT_EQ(filled.mesh.V.topRows(open.vertex_count()), open.V);
+  EXPECT_EQ(filled.mesh.F.topRows(open.face_count()), open.F);
+  EXPECT_FALSE(fill_holes(limbed(2)).value().was_open());
+}
+
+TEST(MatchAndMap, MapsWhatTwoSurfacesHaveInCommon) {
+  const TriangleMesh whole = limbed(4), open = cut_below(limbed(3), -0.15);
+  const auto matched = match_and_map(whole, open, {}, {});
+  ASSERT_TRUE(matched) << matched.error().message;
+  EXPECT_EQ(matched->holes, (std::array<int, 2>{0, 1}));
+  const SurfaceMap& map = matched->result.map;
+  const Status partial = validate_partial(map, whole, open);
+  EXPECT_TRUE(partial) << partial.error().message;
+  EXPECT_FALSE(validate(map, whole, open));  // it does not cover the whole source
+  EXPECT_NEAR(matched->result.quality.target_coverage, 1, 1e-9);
+  EXPECT_LT(matched->result.quality.source_coverage, 0.99);
+  EXPECT_EQ(matched->result.quality.flipped, 0);
+  int unmapped = 0;
+  double error = 0;
+  for (int v = 0; v < whole.vertex_count(); ++v) {
+    const int q = map.point_of_source_vertex[static_cast<std::size_t>(v)];
+    unmapped += q < 0 ? 1 : 0;
+    if (q >= 0)
+      error += (position(open, map.target[static_cast<std::size_t>(q)]) - whole.position(v)).norm();
+  }
+  EXPECT_GT(unmapped, 0);
+  EXPECT_LT(error / (whole.vertex_count() - unmapped), 0.05);  // an edge of the coarser mesh
 }
 
 }  // namespace
