@@ -177,7 +177,12 @@ Result<Verdict> play_finals(const Shape& source,
   std::stable_sort(judgement.ranking.begin(),
                    judgement.ranking.end(),
                    [](const Candidate& a, const Candidate& b) { return a.energy < b.energy; });
-  return Verdict{std::move(judgement.ranking), std::move(maps[best]), margin};
+  std::stable_sort(
+      last.begin(), last.end(), [&](size_t i, size_t j) { return energy[i] < energy[j]; });
+  Verdict verdict{std::move(judgement.ranking), {}, margin};
+  for (const size_t i : last)
+    if (maps[i] != nullptr) verdict.maps.push_back(std::move(maps[i]));
+  return verdict;
 }
 
 }  // namespace crosspatch

@@ -17,8 +17,8 @@ struct Candidate {
 };
 
 struct JudgeOptions {
-  int chains = 2;     ///< tried for every candidate; Source: one to five change the winner in a few
-                      ///< percent of pairs
+  int chains = 2;  ///< tried for every candidate; Source: one to five change the winner in a few
+                   ///< percent of pairs
   int finalists = 12;  ///< tried again with `final_chains`
   int final_chains = 12;
   /// Initial maps that go to the finals: the best of every finalist and, while there is room, maps
@@ -47,8 +47,9 @@ Result<Judgement> judge(const Shape& source,
 
 /// What the finals decide.
 struct Verdict {
-  std::vector<Candidate> ranking;     ///< finalists by energy, then the others by distortion
-  std::unique_ptr<SphereMap> winner;  ///< that of ranking[0], optimised on the coarse level
+  std::vector<Candidate> ranking;  ///< finalists by energy, then the others by distortion
+  /// Coarse maps that were optimised to the end, by energy; the first is that of ranking[0].
+  std::vector<std::unique_ptr<SphereMap>> maps;
   /// Energy of the best final whose map is another one (by more than 0.05 sqrt(area) in the mean)
   /// minus the winner's; infinite if there is none.
   double margin = 0;

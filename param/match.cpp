@@ -97,7 +97,13 @@ Result<MatchedMap> match_closed(const TriangleMesh& source,
   auto verdict = play_finals(shapes->first, shapes->second, std::move(*judgement), options.map);
   if (!verdict) return tl::unexpected(verdict.error());
   stage("map");
-  auto result = finish_map(*verdict->winner, shapes->first, shapes->second);
+  // Where landmarks strain the map, the best coarse map may be too crumpled to be refined.
+  Result<MapResult> result = fail(ErrorCode::kInternal, "not tried");
+  for (const auto& map : verdict->maps) {
+    result = finish_map(*map, shapes->first, shapes->second);
+    if (result) break;
+    verdict->margin = 0;
+  }
   if (!result) return tl::unexpected(result.error());
   return MatchedMap{std::move(verdict->ranking), verdict->margin, std::move(*result)};
 }

@@ -27,7 +27,7 @@ struct MatchOptions {
 /// A map with all that led to it.
 struct MatchedMap {
   std::vector<Candidate> ranking;  ///< by the finals and the judge; ranking[0] was mapped
-  double margin = 0;               ///< Verdict::margin; infinite where landmarks left no choice
+  double margin = 0;  ///< Verdict::margin; 0 if the winner could not be refined and a rival was
   MapResult result;
   /// Boundary loops of the source and of the target, which were closed for the map and opened
   /// again: with any, the map is one of parts.

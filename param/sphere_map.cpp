@@ -131,6 +131,25 @@ double SphereMap::coarse_distance(const SphereMap& other) const {
 }
 
 Status SphereMap::refine() {
+  const Refinement coarse = level_;
+  const MatrixX3d places = X_;
+  if (!spread_out()) {
+    // Too crumpled: vertex by vertex instead, with an optimisation now and then.
+    constexpr double kGrowth = 1.4;
+    level_ = coarse;
+    X_ = places;
+    if (Status s = split_back(kGrowth); !s)
+      return fail(
+          ErrorCode::kNoCorrespondence,
+          "map: the full mesh cannot be laid out, do the landmarks contradict each other? (" +
+              s.error().message + ")");
+  }
+  relax_worst(level_, source_.mesh.V, lift_, pinned_, X_, hint_);
+  descend(options_.fine_iterations);
+  return {};
+}
+
+Status SphereMap::spread_out() {
   const auto level = mesh_level(source_.mesh, level_);
   if (!level) return tl::unexpected(level.error());
   const MatrixX3d own = source_.X(level->vertex, Eigen::all), image = X_(level->vertex, Eigen::all);
@@ -146,15 +165,17 @@ Status SphereMap::refine() {
   level_ = Refinement(full_level(source_.mesh));
   SphereProblem problem = make_sphere_problem(source_.mesh.F, source_.mesh.V, pinned_);
   hold_against_target(problem);
-  if (Status s = untangle(problem); !s) return s;
+  constexpr double kSeldom = 3;
+  return untangle(problem).and_then([&] { return split_back(kSeldom); });
+}
+
+Status SphereMap::split_back(double growth) {
   const RefineOptions options{
       .until_vertices = source_.mesh.vertex_count(),
       .pinned = pinned_,
+      .growth = growth,
       .optimizer = {.max_iterations = 10, .relative_decrease = 2e-3, .barrier = kBarrier}};
-  if (Status s = refine_on_sphere(level_, source_.mesh.V, lift_, options, X_, hint_); !s) return s;
-  relax_worst(level_, source_.mesh.V, lift_, pinned_, X_, hint_);
-  descend(options_.fine_iterations);
-  return {};
+  return refine_on_sphere(level_, source_.mesh.V, lift_, options, X_, hint_);
 }
 
 void SphereMap::settle() {

@@ -53,6 +53,11 @@ class SphereMap {
   Result<SurfaceMap> overlay();
 
  private:
+  /// Puts the full mesh's vertices where they lie in the level's faces in the source's own
+  /// embedding, and untangles what turns over by that.
+  Status spread_out();
+  /// Splits the vertices that are collapsed back, see RefineOptions::growth.
+  Status split_back(double growth);
   /// Turns faces back, and where that does not help collapses vertices of the level.
   Status untangle(const SphereProblem& problem);
   /// Lets go of the landmarks that only decided the homotopy class. True if there were any.
