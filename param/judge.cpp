@@ -76,13 +76,6 @@ std::vector<Trial> run_trials(const ChainPlanner& planner,
 
 }  // namespace
 
-bool contradicts(const Candidate& a, const Candidate& b) {
-  for (const Landmark& p : a.landmarks)
-    for (const Landmark& q : b.landmarks)
-      if ((p.source_vertex == q.source_vertex) != (p.target_vertex == q.target_vertex)) return true;
-  return false;
-}
-
 Result<Judgement> judge(const Shape& source,
                         const Shape& target,
                         std::vector<Candidate> candidates,

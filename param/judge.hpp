@@ -64,8 +64,4 @@ Result<Verdict> play_finals(const Shape& source,
                             Judgement judgement,
                             const MapOptions& options);
 
-/// Whether two candidates send some source vertex, or bring to some target vertex, different
-/// partners.
-bool contradicts(const Candidate& a, const Candidate& b);
-
 }  // namespace crosspatch
