@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace crosspatch {
 namespace {
@@ -77,6 +78,13 @@ std::vector<int> fan_triangle_corners(const PolygonSoup& soup) {
       corners.insert(corners.end(), {begin[0], c, c + 1});
   }
   return corners;
+}
+
+Vector2d transformed(const Vector2d& uv, const std::optional<TextureTransform>& transform) {
+  if (!transform) return uv;
+  const double c = std::cos(transform->rotation_radians), s = std::sin(transform->rotation_radians);
+  const Vector2d p = uv.cwiseProduct(transform->scale);
+  return transform->offset + Vector2d(c * p.x() + s * p.y(), -s * p.x() + c * p.y());
 }
 
 }  // namespace crosspatch

@@ -25,6 +25,10 @@ struct TextureTransform {
   Vector2d scale{1, 1};
 };
 
+/// The coordinates at which an image is read; unchanged without a transform. Turns
+/// counter-clockwise in a picture whose v runs downwards.
+Vector2d transformed(const Vector2d& uv, const std::optional<TextureTransform>& transform);
+
 /// The use of an image by a material. Wrap and filter numbers are those of glTF samplers (10497
 /// repeat, 33071 clamp, ...).
 struct TextureRef {

@@ -7,6 +7,8 @@
 #include <sstream>
 
 #include "tools/version.hpp"
+#include "transfer/bake.hpp"
+#include "transfer/write_mesh_files.hpp"
 
 namespace crosspatch {
 namespace {
@@ -142,9 +144,43 @@ CLI::App* add_map(CLI::App& app, MapArguments& arguments) {
 CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
   CLI::App* command = app.add_subcommand(
       "transfer", "Carry the textures of one surface to another of a different shape");
-  command->add_option("-o,--output", arguments.output, "Textured TARGET to write")
+  command
+      ->add_option("-o,--output",
+                   arguments.output,
+                   "Textured TARGET to write: .glb, .gltf, .obj (with images beside it) or .ply "
+                   "(colours at vertices)")
       ->required()
-      ->type_name("GLB");
+      ->type_name("FILE");
+  command
+      ->add_option("--mode",
+                   arguments.mode,
+                   "keep: the images as they are, TARGET cut along their seams; bake: TARGET as it "
+                   "is, new images over its own texture coordinates, or over new ones where those "
+                   "do not serve [keep]")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, TransferMode>{
+          {"keep", TransferMode::kKeep}, {"bake", TransferMode::kBake}}))
+      ->type_name("keep|bake");
+  command->add_option("--size", arguments.size, "bake: texels a side of the new images [2048]")
+      ->check(CLI::Range(kLeastBakeSize, kLargestBakeSize))
+      ->type_name("TEXELS");
+  command->add_option("--image", arguments.image_format, "bake: kind of the new images [png]")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, ImageFormat>{
+          {"png", ImageFormat::kPng}, {"jpeg", ImageFormat::kJpeg}, {"exr", ImageFormat::kExr}}))
+      ->type_name("png|jpeg|exr");
+  command->add_option("--bits", arguments.bits, "bake: bits a channel of PNG images [8]")
+      ->check(CLI::IsMember({8, 16}))
+      ->type_name("8|16");
+  command
+      ->add_option("--uv-tolerance",
+                   arguments.uv_tolerance_texels,
+                   "keep: texels that texture coordinates may stray from the map [0.5]")
+      ->check(CLI::Range(0.0, 1e6))
+      ->type_name("TEXELS");
+  command
+      ->add_option("--map",
+                   arguments.pair.files.map,
+                   "Use this map of the two files, an overlay that 'crosspatch map' wrote [found]")
+      ->type_name("FILE");
   command
       ->add_option("--texture",
                    arguments.pair.files.texture,
@@ -156,9 +192,22 @@ CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
       "\nExamples:\n"
       "  crosspatch transfer cow.obj camel.off --output camel.glb\n"
       "  crosspatch transfer cow.obj camel.off --landmarks pairs.txt --output camel.glb\n"
-      "  crosspatch transfer cow.obj camel.off --texture hide.png --output camel.glb\n"
+      "  crosspatch transfer cow.obj camel.obj --mode bake --size 4096 --output camel.glb\n"
+      "  crosspatch transfer cow.obj camel.off --texture hide.png --output camel.gltf\n"
       "  crosspatch render camel.glb --output camel.png");
   return command;
+}
+
+/// What is wrong with options that are each right.
+std::string contradiction(const TransferArguments& a) {
+  const std::optional<MeshFormat> format = mesh_format(a.output);
+  if (!format) return fmt::format("--output: '{}' is no .glb, .gltf, .obj or .ply", a.output);
+  if (a.image_format == ImageFormat::kExr && *format != MeshFormat::kObj)
+    return "--image exr: only an .obj can refer to EXR images";
+  if (a.image_format == ImageFormat::kJpeg && a.bits != 8) return "--bits 16: a JPEG has 8";
+  if (!a.pair.files.map.empty() && !a.pair.files.landmarks.empty())
+    return "--map and --landmarks: a given map needs no landmarks";
+  return "";
 }
 
 void add_render(CLI::App& app, RenderArguments& arguments) {
@@ -275,7 +324,11 @@ tl::expected<Command, CommandLineStop> parse_command_line(int argc, const char* 
           CommandLineStop{ExitCode::kUsage, "--method paper takes no --landmarks"});
     return match;
   }
-  if (transfer_command->parsed()) return transfer;
+  if (transfer_command->parsed()) {
+    if (const std::string wrong = contradiction(transfer); !wrong.empty())
+      return tl::unexpected(CommandLineStop{ExitCode::kUsage, wrong});
+    return transfer;
+  }
   if (render.lines && (render.mesh2.empty() || render.landmarks.empty()))
     return tl::unexpected(CommandLineStop{ExitCode::kUsage, "--lines needs MESH2 and --landmarks"});
   if (!render.map.empty() && render.mesh2.empty())

@@ -8,6 +8,7 @@
 #include "tools/exit_code.hpp"
 #include "tools/pair_files.hpp"
 #include "tools/view.hpp"
+#include "transfer/image_codec.hpp"
 
 namespace crosspatch {
 
@@ -75,10 +76,21 @@ struct MapArguments {
   std::string overlay;  ///< the common subdivision; empty = none
 };
 
+/// How a texture is carried.
+enum class TransferMode {
+  kKeep,  ///< images as they are, the target cut along their seams
+  kBake,  ///< the target as it is, new images
+};
+
 /// crosspatch transfer SOURCE TARGET
 struct TransferArguments {
   PairArguments pair;
-  std::string output;  ///< GLB
+  std::string output;  ///< GLB, glTF, OBJ or PLY
+  TransferMode mode = TransferMode::kKeep;
+  double uv_tolerance_texels = 0.5;  ///< kKeep: see CarryTextureOptions
+  int size = 2048;                   ///< kBake: texels a side
+  ImageFormat image_format = ImageFormat::kPng;
+  int bits = 8;  ///< kBake: of a channel
 };
 
 using Command = std::

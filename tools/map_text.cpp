@@ -16,9 +16,11 @@ size_t at(int i) {
   return static_cast<size_t>(i);
 }
 
-/// "face b0 b1 b2": 17 digits read back as the same double.
+}  // namespace
+
 void append_point(std::string& text, const SurfacePoint& p) {
   if (p.valid())
+    // 17 digits read back as the same double.
     fmt::format_to(std::back_inserter(text),
                    "{} {:.17g} {:.17g} {:.17g}",
                    p.face,
@@ -28,8 +30,6 @@ void append_point(std::string& text, const SurfacePoint& p) {
   else
     text += "-1 0 0 0";
 }
-
-}  // namespace
 
 std::vector<SurfacePoint> map_of_file_vertices(const SurfaceMap& map,
                                                const PreparedMesh& source,
@@ -78,30 +78,6 @@ Result<std::vector<SurfacePoint>> parse_map(std::string_view text,
     return fail(ErrorCode::kBadInput,
                 fmt::format("{} lines for {} vertices", points.size(), point_count));
   return points;
-}
-
-std::string overlay_text(const SurfaceMap& map,
-                         const PreparedMesh& source,
-                         const PreparedMesh& target) {
-  std::string text =
-      fmt::format("crosspatch-overlay 1\n{} {}\n", map.point_count(), map.polygon_count());
-  for (int i = 0; i < map.point_count(); ++i) {
-    append_point(text, to_file(source, map.source[at(i)]));
-    text += ' ';
-    append_point(text, to_file(target, map.target[at(i)]));
-    text += '\n';
-  }
-  for (int p = 0; p < map.polygon_count(); ++p) {
-    const int begin = map.polygon_begin[at(p)], end = map.polygon_begin[at(p + 1)];
-    fmt::format_to(std::back_inserter(text), "{}", end - begin);
-    for (int c = begin; c < end; ++c)
-      fmt::format_to(std::back_inserter(text), " {}", map.corner[at(c)]);
-    fmt::format_to(std::back_inserter(text),
-                   " {} {}\n",
-                   source.numbering.file_triangle[at(map.source_face[at(p)])],
-                   target.numbering.file_triangle[at(map.target_face[at(p)])]);
-  }
-  return text;
 }
 
 }  // namespace crosspatch

@@ -25,13 +25,7 @@ Result<std::vector<SurfacePoint>> parse_map(std::string_view text,
                                             int point_count,
                                             int triangle_count);
 
-/// The map as a common subdivision in both files' numberings:
-///     crosspatch-overlay 1
-///     #points #polygons
-///     fa a0 a1 a2 fb b0 b1 b2      a line a point: on source triangle fa, on target triangle fb
-///     n p0 ... p(n-1) fa fb        a line a polygon inside source triangle fa, target triangle fb
-std::string overlay_text(const SurfaceMap& map,
-                         const PreparedMesh& source,
-                         const PreparedMesh& target);
+/// Appends "face b0 b1 b2", numbers that read back equal, or "-1 0 0 0".
+void append_point(std::string& text, const SurfacePoint& p);
 
 }  // namespace crosspatch

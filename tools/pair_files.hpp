@@ -9,6 +9,7 @@ struct PairFiles {
   std::string source;
   std::string target;
   std::string landmarks;  ///< file of corresponding vertices; empty = none
+  std::string map;        ///< file of a map of the two to use; empty = find one
   std::string texture;    ///< what the source wears, see give_texture; empty = its own
 };
 

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
+#include "tools/overlay_text.hpp"
 #include "tools/source_texture.hpp"
 
 namespace crosspatch {
@@ -45,6 +47,23 @@ Result<MatchedMap> find_map(const PairRun& run, Progress& progress) {
   MatchOptions options;
   options.progress = [&progress](const std::string& stage) { progress.begin(stage); };
   return match_and_map(run.source.prepared.mesh, run.target.prepared.mesh, run.landmarks, options);
+}
+
+Result<MatchedMap> read_map(const std::string& path, const PairRun& run, Progress& progress) {
+  progress.begin("map");
+  const PreparedMesh &source = run.source.prepared, &target = run.target.prepared;
+  return read_input_text(path)
+      .and_then([&](const std::string& text) { return parse_overlay(text, source, target); })
+      .map([&](SurfaceMap map) {
+        MatchedMap matched;
+        matched.margin = std::numeric_limits<double>::infinity();
+        matched.result.quality = measure_map(map, source.mesh, target.mesh);
+        matched.result.map = std::move(map);
+        matched.holes = {static_cast<int>(boundary_loops(source.mesh).size()),
+                         static_cast<int>(boundary_loops(target.mesh).size())};
+        return matched;
+      })
+      .map_error([&](const Error& error) { return with_path(path, error); });
 }
 
 std::string map_summary(const MatchedMap& matched) {
@@ -114,25 +133,15 @@ Result<PairRun> read_pair(const PairFiles& files, Progress& progress) {
   return run;
 }
 
-Result<PairRun> run_pair(const PairFiles& files, LastStage last, Progress& progress) {
+Result<PairRun> run_pair(const PairFiles& files, Progress& progress) {
   Result<PairRun> read = read_pair(files, progress);
   if (!read) return read;
   PairRun run = std::move(*read);
-  Result<MatchedMap> matched = find_map(run, progress);
+  Result<MatchedMap> matched =
+      files.map.empty() ? find_map(run, progress) : read_map(files.map, run, progress);
   if (!matched) return tl::unexpected(matched.error());
   run.matched = std::move(*matched);
   progress.end(map_summary(run.matched));
-  if (last == LastStage::kMap) return run;
-
-  progress.begin("transfer");
-  Result<CarriedTexture> carried = carry_texture({run.source.prepared, run.source.soup},
-                                                 {run.target.prepared, run.target.soup},
-                                                 run.matched.result.map);
-  if (!carried) return tl::unexpected(carried.error());
-  run.carried = std::move(*carried);
-  progress.end(fmt::format("{} triangles, {} seam cuts",
-                           run.carried.statistics.triangles,
-                           run.carried.statistics.seam_cuts));
   return run;
 }
 

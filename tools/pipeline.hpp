@@ -9,34 +9,27 @@
 #include "tools/landmarks.hpp"
 #include "tools/pair_files.hpp"
 #include "tools/progress.hpp"
-#include "transfer/carry_texture.hpp"
 
 namespace crosspatch {
 
-/// How far a run over a pair of surfaces goes.
-enum class LastStage { kMap, kTransfer };
-
-/// The largest number of stages that report progress.
-constexpr int stage_count(LastStage last) {
-  return last == LastStage::kMap ? 7 : 8;
-}
+/// The largest number of stages up to the map that report progress.
+constexpr int kMapStages = 7;
 
 /// All that a run over a pair has made, stage by stage; later stages are empty where it stopped
-/// before.
+/// before. A map that was given has no ranking.
 struct PairRun {
   InputMesh source;
   InputMesh target;
   std::vector<Landmark> landmarks;  ///< vertices of the prepared meshes
   MatchedMap matched;               ///< from the source's prepared mesh to the target's
-  CarriedTexture carried;           ///< the source's attributes on the target
 };
 
 /// file -> soup -> mesh -> landmarks. kBadInput with the file's path.
 Result<PairRun> read_pair(const PairFiles& files, Progress& progress);
 
-/// file -> soup -> mesh -> landmarks -> map -> carried texture, as far as `last`.
+/// file -> soup -> mesh -> landmarks -> map; the map is read where a file of one is given.
 /// Errors are those of the stages, with the file's path where a file is to blame.
-Result<PairRun> run_pair(const PairFiles& files, LastStage last, Progress& progress);
+Result<PairRun> run_pair(const PairFiles& files, Progress& progress);
 
 /// The paper's matching of a pair that has been read: its features matched by spectral matching.
 Result<Matching> paper_matching(const PairRun& run, Progress& progress);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/weld.hpp"
 #include "tools/image_io.hpp"
 #include "tools/palette.hpp"
 
@@ -41,14 +42,6 @@ Result<std::vector<int>> add_textures(const PolygonSoup& soup, Scene& scene) {
   return texture_of_material;
 }
 
-Vector2d transformed(const Vector2d& uv, const std::optional<TextureTransform>& transform) {
-  if (!transform) return uv;
-  // Counter-clockwise in a picture whose v runs downwards, as KHR_texture_transform defines it.
-  const double c = std::cos(transform->rotation_radians), s = std::sin(transform->rotation_radians);
-  const Vector2d p = uv.cwiseProduct(transform->scale);
-  return transform->offset + Vector2d(c * p.x() + s * p.y(), -s * p.x() + c * p.y());
-}
-
 Color material_color(const Material& material) {
   return Eigen::Vector3d(material.base_color_factor[0],
                          material.base_color_factor[1],
@@ -68,11 +61,14 @@ std::vector<int> fan_polygons(const PolygonSoup& soup) {
 }  // namespace
 
 Surface make_surface(const MatrixX3d& V, const MatrixX3i& F) {
+  // Files repeat vertices along seams, where the surface is as smooth as elsewhere.
+  const std::vector<int> place =
+      weld(V, std::vector<bool>(at(static_cast<int>(V.rows())), true), 0);
   MatrixX3d normal = MatrixX3d::Zero(V.rows(), 3);
   for (int f = 0; f < F.rows(); ++f) {
     const Vector3d a = V.row(F(f, 0)), b = V.row(F(f, 1)), c = V.row(F(f, 2));
     const Eigen::RowVector3d n = (b - a).cross(c - a).transpose();
-    for (int k = 0; k < 3; ++k) normal.row(F(f, k)) += n;
+    for (int k = 0; k < 3; ++k) normal.row(place[at(F(f, k))]) += n;
   }
   normal.rowwise().normalize();
   Surface surface;
@@ -80,7 +76,8 @@ Surface make_surface(const MatrixX3d& V, const MatrixX3i& F) {
   surface.F = F;
   surface.corner_normal.resize(3 * F.rows(), 3);
   for (int f = 0; f < F.rows(); ++f)
-    for (int k = 0; k < 3; ++k) surface.corner_normal.row(3 * f + k) = normal.row(F(f, k));
+    for (int k = 0; k < 3; ++k)
+      surface.corner_normal.row(3 * f + k) = normal.row(place[at(F(f, k))]);
   return surface;
 }
 
@@ -90,7 +87,14 @@ Surface plain_surface(const PolygonSoup& soup) {
   for (size_t c = 0; c < corners.size(); ++c)
     F(static_cast<Eigen::Index>(c / 3), static_cast<Eigen::Index>(c % 3)) =
         soup.corner_vertex[at(corners[c])];
-  return make_surface(soup.positions, F);
+  Surface surface = make_surface(soup.positions, F);
+  if (soup.corner_normals.empty()) return surface;
+  for (size_t c = 0; c < corners.size(); ++c) {
+    const Vector3d n = soup.corner_normals[at(corners[c])];
+    if (n.allFinite() && n.norm() > 0)
+      surface.corner_normal.row(static_cast<Eigen::Index>(c)) = n.normalized().transpose();
+  }
+  return surface;
 }
 
 Result<Scene> textured_scene(const PolygonSoup& soup) {

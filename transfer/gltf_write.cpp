@@ -4,9 +4,11 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstring>
 #include <limits>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <tuple>
 
@@ -25,13 +27,49 @@ class Writer {
   }
 
   Result<std::string> write() {
+    if (Status s = build(); !s) return tl::unexpected(s.error());
+    std::ostringstream stream;
+    tinygltf::TinyGLTF writer;
+    if (!writer.WriteGltfSceneToStream(&model_, stream, /*prettyPrint=*/false, /*binary=*/true))
+      return fail(ErrorCode::kOutput, "GLB: the encoder failed");
+    return stream.str();
+  }
+
+  /// Images and the buffer go to files of their own, which the JSON text names.
+  Result<std::vector<NamedBytes>> write_files(const std::string& stem) {
+    images_beside_ = true;
+    if (Status s = build(); !s) return tl::unexpected(s.error());
+    std::string buffer(model_.buffers[0].data.begin(), model_.buffers[0].data.end());
+    const std::size_t size = buffer.size();
+    // tinygltf would write the buffer as a data URI; the text is completed here instead.
+    model_.buffers.clear();
+    std::ostringstream stream;
+    tinygltf::TinyGLTF writer;
+    if (!writer.WriteGltfSceneToStream(&model_, stream, /*prettyPrint=*/false, /*binary=*/false))
+      return fail(ErrorCode::kOutput, "glTF: the encoder failed");
+    auto json = nlohmann::json::parse(stream.str(), nullptr, /*allow_exceptions=*/false);
+    if (json.is_discarded()) return fail(ErrorCode::kInternal, "glTF: the encoder wrote no JSON");
+    json["buffers"] = {{{"byteLength", size}, {"uri", uri(stem + ".bin")}}};
+    std::vector<NamedBytes> files{{stem + ".gltf", ""}, {stem + ".bin", std::move(buffer)}};
+    for (const auto& [image, place] : image_) {
+      const ImageFile& file = mesh_.images[idx(image)];
+      const std::string name = stem + "_" + file.name;
+      json["images"][idx(place)] = {{"name", file.name}, {"uri", uri(name)}};
+      files.push_back({name, {file.bytes.begin(), file.bytes.end()}});
+    }
+    files.front().bytes = json.dump(1);
+    return files;
+  }
+
+ private:
+  Status build() {
     tinygltf::Mesh out;
     for (int m = 0; m < static_cast<int>(mesh_.materials.size()); ++m) {
       const Material& material = mesh_.materials[idx(m)];
       const VertexBuffer vertices =
           weld_corners(mesh_, m, material.normal.image >= 0 ? material.normal.uv_set : -1);
       if (vertices.indices.empty()) continue;
-      if (Status s = add_material(material); !s) return tl::unexpected(s.error());
+      if (Status s = add_material(material); !s) return s;
       out.primitives.push_back(primitive(vertices));
     }
     if (out.primitives.empty())
@@ -44,14 +82,22 @@ class Writer {
     if (size > kLargestBuffer)
       return fail(ErrorCode::kOutput,
                   fmt::format("GLB: {} bytes of data, at most {} fit", size, kLargestBuffer));
-    std::ostringstream stream;
-    tinygltf::TinyGLTF writer;
-    if (!writer.WriteGltfSceneToStream(&model_, stream, /*prettyPrint=*/false, /*binary=*/true))
-      return fail(ErrorCode::kOutput, "GLB: the encoder failed");
-    return stream.str();
+    return {};
   }
 
- private:
+  /// A file name as a URI: bytes that have a meaning there as %XX.
+  static std::string uri(const std::string& name) {
+    std::string text;
+    for (const char c : name) {
+      const auto byte = static_cast<unsigned char>(c);
+      if (std::isalnum(byte) != 0 || c == '.' || c == '_' || c == '-' || c == '~')
+        text += c;
+      else
+        text += fmt::format("%{:02X}", byte);
+    }
+    return text;
+  }
+
   /// Appends bytes to the buffer and returns their view. `target` 0: not for vertices or indices.
   int add_view(const void* data, std::size_t size, int target) {
     auto& bytes = model_.buffers[0].data;
@@ -141,7 +187,7 @@ class Writer {
     tinygltf::Image out;
     out.name = file.name;
     out.mimeType = file.mime_type;
-    out.bufferView = add_view(file.bytes.data(), file.bytes.size(), 0);
+    if (!images_beside_) out.bufferView = add_view(file.bytes.data(), file.bytes.size(), 0);
     model_.images.push_back(std::move(out));
     return image_[image] = static_cast<int>(model_.images.size()) - 1;
   }
@@ -228,6 +274,7 @@ class Writer {
 
   const TexturedMesh& mesh_;
   tinygltf::Model model_;
+  bool images_beside_ = false;
   std::map<int, int> image_;
   std::map<std::tuple<int, int, int, int>, int> sampler_;
   std::map<std::pair<int, int>, int> texture_;
@@ -238,6 +285,11 @@ class Writer {
 Result<std::string> encode_glb(const TexturedMesh& mesh) {
   if (Status s = validate(mesh); !s) return tl::unexpected(s.error());
   return Writer(mesh).write();
+}
+
+Result<std::vector<NamedBytes>> encode_gltf(const TexturedMesh& mesh, const std::string& stem) {
+  if (Status s = validate(mesh); !s) return tl::unexpected(s.error());
+  return Writer(mesh).write_files(stem);
 }
 
 }  // namespace crosspatch

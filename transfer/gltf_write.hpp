@@ -4,6 +4,7 @@
 
 #include "core/result.hpp"
 #include "transfer/textured_mesh.hpp"
+#include "transfer/write_mesh_files.hpp"
 
 namespace crosspatch {
 
@@ -15,5 +16,9 @@ namespace crosspatch {
 /// images nothing refers to are left out. kInternal when `mesh` breaks an invariant; kOutput when
 /// there is no triangle, an image in use is neither PNG nor JPEG, or the file would pass 4 GiB.
 Result<std::string> encode_glb(const TexturedMesh& mesh);
+
+/// The same as JSON "STEM.gltf", its buffer "STEM.bin" and images "STEM_NAME" beside it. Images
+/// must have names that differ.
+Result<std::vector<NamedBytes>> encode_gltf(const TexturedMesh& mesh, const std::string& stem);
 
 }  // namespace crosspatch

@@ -27,9 +27,8 @@ struct VertexBuffer {
 /// Welds the corners of the triangles of `material` that agree in every attribute, vertices in
 /// order of first use.
 ///
-/// With `tangent_uv_set` each vertex gets a tangent along increasing u of that set, averaged over
-/// its corners by angle and projected into the normal's plane, and mirrored UVs are kept apart, as
-/// in MikkTSpace (Mikkelsen 2008), on which normal maps are commonly baked.
+/// With `tangent_uv_set` each vertex gets a tangent along increasing u of that set, see
+/// corner_tangents.
 VertexBuffer weld_corners(const TexturedMesh& mesh, int material, int tangent_uv_set = -1);
 
 }  // namespace crosspatch

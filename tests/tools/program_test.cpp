@@ -178,13 +178,47 @@ TEST_F(PairOfSurfaces, ThreadsDoNotChangeTheBytesOfMapAndTexture) {
     EXPECT_EQ(
         run("map" + common + "out/map" + threads + " --overlay out/overlay" + threads).exit_code,
         0);
-    EXPECT_EQ(run("transfer" + common + "out/glb" + threads).exit_code, 0);
+    EXPECT_EQ(run("transfer" + common + "out/keep" + threads + ".glb").exit_code, 0);
+    EXPECT_EQ(run("transfer" + common + "out/bake" + threads + ".glb --mode bake --size 128" +
+                  " --map out/overlay" + threads)
+                  .exit_code,
+              0);
   }
-  for (const char* name : {"out/map", "out/overlay", "out/glb"})
-    EXPECT_EQ(test::read_text(folder / (name + std::string("1"))),
-              test::read_text(folder / (name + std::string("2"))))
+  for (const auto& [name, extension] : std::map<std::string, std::string>{
+           {"out/map", ""}, {"out/overlay", ""}, {"out/keep", ".glb"}, {"out/bake", ".glb"}})
+    EXPECT_EQ(test::read_text(folder / (name + "1" + extension)),
+              test::read_text(folder / (name + "2" + extension)))
         << name;
-  EXPECT_TRUE(test::read_text(folder / "out/glb1").starts_with("glTF"));
+  EXPECT_TRUE(test::read_text(folder / "out/bake1.glb").starts_with("glTF"));
+}
+
+TEST_F(PairOfSurfaces, BakedImagesLieBesideTheirMesh) {
+  ASSERT_EQ(run("map source.obj target.off --quiet -o out/map --overlay out/overlay").exit_code, 0);
+  const std::string given = "transfer source.obj target.off --quiet --map out/overlay ";
+  EXPECT_EQ(
+      run(given + "--mode bake --size 64 --bits 16 -o out/b.gltf --json out/b.json").exit_code, 0);
+  EXPECT_THAT(written(),
+              testing::UnorderedElementsAre(
+                  "map", "overlay", "b.gltf", "b.bin", "b_base_color.png", "b.json"));
+  const auto report = nlohmann::json::parse(test::read_text(folder / "out/b.json"));
+  EXPECT_EQ(report["quality"]["texels_filled"].get<double>(), 1);
+  EXPECT_EQ(report["options"]["mode"], "bake");
+  EXPECT_FALSE(report["quality"].contains("margin"));  // nothing was chosen
+}
+
+TEST_F(PairOfSurfaces, TransferOptionsThatContradictAreRefused) {
+  const std::string pair = "transfer source.obj target.off --mode bake --output out/";
+  for (const auto& [options, line] : std::map<std::string, std::string>{
+           {"a.fbx", "--output: 'out/a.fbx' is no .glb, .gltf, .obj or .ply"},
+           {"a.glb --image exr", "--image exr: only an .obj can refer to EXR images"},
+           {"a.glb --image jpeg --bits 16", "--bits 16: a JPEG has 8"},
+           {"a.glb --map m --landmarks l",
+            "--map and --landmarks: a given map needs no landmarks"}}) {
+    const test::Outcome done = run(pair + options);
+    EXPECT_EQ(done.exit_code, 2) << options;
+    EXPECT_THAT(done.err, testing::HasSubstr(line));
+  }
+  EXPECT_THAT(written(), testing::IsEmpty());
 }
 
 TEST_F(PairOfSurfaces, MatchesNameVerticesOfBothFilesOnce) {

@@ -9,6 +9,7 @@
 #include "tools/landmarks.hpp"
 #include "tools/map_text.hpp"
 #include "tools/output_files.hpp"
+#include "tools/overlay_text.hpp"
 #include "tools/sha256.hpp"
 #include "tools/text_lines.hpp"
 
@@ -84,6 +85,34 @@ TEST(OverlayText, HasThePromisedLines) {
   ASSERT_EQ(lines.size(), 10u);
   for (std::size_t i = 2; i < 6; ++i) EXPECT_EQ(lines[i].words.size(), 8u);
   for (std::size_t i = 6; i < 10; ++i) EXPECT_EQ(lines[i].words.size(), 6u);
+}
+
+TEST(OverlayText, ReadsBackAsABijection) {
+  const PreparedMesh mesh = unchanged(shapes::icosphere(1));
+  const SurfaceMap map = identity_map(mesh.mesh);
+  const std::string text = overlay_text(map, mesh, mesh);
+  EXPECT_TRUE(is_overlay_text(text));
+  const auto read = parse_overlay(text, mesh, mesh);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_TRUE(validate(*read, mesh.mesh, mesh.mesh));
+  EXPECT_EQ(read->point_of_source_vertex, map.point_of_source_vertex);
+  EXPECT_EQ(overlay_text(*read, mesh, mesh), text);
+}
+
+TEST(OverlayText, IsRefusedWithItsLine) {
+  const PreparedMesh mesh = unchanged(shapes::tetrahedron());
+  const std::string text = overlay_text(identity_map(mesh.mesh), mesh, mesh);
+  const auto message = [&](const std::string& changed) {
+    const auto map = parse_overlay(changed, mesh, mesh);
+    return map ? std::string("read") : map.error().message;
+  };
+  EXPECT_EQ(message("crosspatch-overlay 2\n0 0\n"), "not an overlay of version 1");
+  EXPECT_EQ(message("crosspatch-overlay 1\n4 5\n" + text.substr(text.find("4 4\n") + 4)),
+            "8 lines for 4 points and 5 polygons");
+  EXPECT_EQ(message("crosspatch-overlay 1\n1 0\n9 1 0 0 0 1 0 0\n"),
+            "line 3: triangle 9 is no part of the mesh");
+  EXPECT_EQ(message("crosspatch-overlay 1\n1 1\n0 1 0 0 0 1 0 0\n3 0 0 1 0 0\n"),
+            "line 4: point 1 is outside [0, 1)");
 }
 
 TEST(Landmarks, AreReadWithComments) {

@@ -1,0 +1,176 @@
+#include "transfer/source_look.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <set>
+
+#include "core/index.hpp"
+#include "transfer/tangents.hpp"
+#include "transfer/texel_raster.hpp"
+
+namespace crosspatch {
+namespace {
+
+using Eigen::Array4f;
+
+bool is_opaque(const Material& material) {
+  return material.alpha_mode == "OPAQUE";
+}
+
+bool is_color(Channel channel) {
+  return channel == Channel::kBaseColor || channel == Channel::kEmissive;
+}
+
+/// What the material multiplies its image by, and shows where it has none.
+Array4f factor(const Material& m, Channel channel) {
+  const auto f = [](double x) { return static_cast<float>(x); };
+  if (channel == Channel::kBaseColor) {
+    const auto& c = m.base_color_factor;
+    const float alpha = is_opaque(m) ? 1.0F : f(c[3]);
+    return {f(c[0]) * alpha, f(c[1]) * alpha, f(c[2]) * alpha, alpha};
+  }
+  if (channel == Channel::kMetallicRoughness)
+    return {1, f(m.roughness_factor), f(m.metallic_factor), 1};
+  if (channel == Channel::kEmissive)
+    return {f(m.emissive_factor[0]), f(m.emissive_factor[1]), f(m.emissive_factor[2]), 1};
+  return Array4f::Ones();
+}
+
+Eigen::Vector4d mix(const std::vector<Eigen::Vector4d>& values, int t, const Vector3d& bary) {
+  return bary[0] * values[idx(3 * t)] + bary[1] * values[idx(3 * t + 1)] +
+         bary[2] * values[idx(3 * t + 2)];
+}
+
+/// Columns tangent, bitangent, normal.
+Eigen::Matrix3d frame(const Vector3d& normal, const Eigen::Vector4d& tangent) {
+  Eigen::Matrix3d m;
+  const Vector3d t = tangent.head<3>();
+  m.col(0) = (t - normal * normal.dot(t)).normalized();
+  m.col(1) = normal.cross(m.col(0)) * (tangent[3] < 0 ? -1 : 1);
+  m.col(2) = normal;
+  return m;
+}
+
+}  // namespace
+
+const TextureRef& texture_of(const Material& m, Channel channel) {
+  switch (channel) {
+    case Channel::kBaseColor:
+      return m.base_color;
+    case Channel::kMetallicRoughness:
+      return m.metallic_roughness;
+    case Channel::kNormal:
+      return m.normal;
+    case Channel::kOcclusion:
+      return m.occlusion;
+    case Channel::kEmissive:
+      break;
+  }
+  return m.emissive;
+}
+
+Result<SourceLook> SourceLook::make(const TexturedMesh& mesh, Channel channel) {
+  SourceLook look(mesh, channel);
+  for (const int m : std::set<int>(mesh.material.begin(), mesh.material.end()))
+    if (Status s = look.load(m); !s) return tl::unexpected(s.error());
+  return look;
+}
+
+Status SourceLook::load(int material) {
+  const Material& m = mesh_->materials[idx(material)];
+  const TextureRef& ref = texture_of(m, channel_);
+  const bool premultiply = channel_ == Channel::kBaseColor && !is_opaque(m);
+  has_alpha_ = has_alpha_ || premultiply;
+  if (ref.image < 0) return {};
+  if (channel_ == Channel::kNormal) {
+    const auto tangents = corner_tangents(*mesh_, material, ref.uv_set);
+    tangents_.resize(tangents.size(), Eigen::Vector4d::Zero());
+    for (std::size_t c = 0; c < tangents.size(); ++c) tangents_[c] += tangents[c];
+  }
+  if (textures_.contains({ref.image, premultiply})) return {};
+  const ImageFile& file = mesh_->images[idx(ref.image)];
+  const Result<RasterImage> image = decode_image_file(file.bytes);
+  if (!image)
+    return fail(ErrorCode::kBadInput, "texture \"" + file.name + "\": " + image.error().message);
+  const ColorSpace space = is_color(channel_) ? ColorSpace::kSrgb : ColorSpace::kLinear;
+  textures_[{ref.image, premultiply}] = make_pyramid(*image, space, premultiply);
+  return {};
+}
+
+SourceLook::Triangle SourceLook::triangle(int t, const std::array<Vector2d, 3>& corner) const {
+  const Material& m = mesh_->materials[idx(mesh_->material[idx(t)])];
+  const TextureRef& ref = texture_of(m, channel_);
+  Triangle triangle;
+  triangle.index = t;
+  triangle.ref = &ref;
+  triangle.factor = factor(m, channel_);
+  if (ref.image < 0) return triangle;
+  triangle.texture = &textures_.at({ref.image, channel_ == Channel::kBaseColor && !is_opaque(m)});
+  std::array<Vector2d, 3> uv;
+  for (std::size_t k = 0; k < 3; ++k) {
+    uv[k] = transformed(mesh_->uv_sets[idx(ref.uv_set)][idx(3 * t) + k], ref.transform);
+    triangle.uv[k] = uv[k].cast<float>();
+  }
+  Eigen::Matrix2d texels, change;
+  texels << corner[1] - corner[0], corner[2] - corner[0];
+  change << uv[1] - uv[0], uv[2] - uv[0];
+  if (texels.determinant() != 0)
+    triangle.footprint = footprint(*triangle.texture, change * texels.inverse());
+  return triangle;
+}
+
+Array4f SourceLook::at(const Triangle& triangle, const Vector3d& bary) const {
+  Array4f value = Array4f::Ones();
+  if (triangle.texture != nullptr) {
+    const Eigen::Vector3f b = bary.cast<float>();
+    const Eigen::Vector2f uv =
+        b[0] * triangle.uv[0] + b[1] * triangle.uv[1] + b[2] * triangle.uv[2];
+    value = sample(*triangle.texture, *triangle.ref, uv, triangle.footprint);
+  }
+  const Material& m = mesh_->materials[idx(mesh_->material[idx(triangle.index)])];
+  switch (channel_) {
+    case Channel::kNormal:
+      return triangle.texture != nullptr ? turned(triangle, bary, value)
+                                         : Array4f(0.5F, 0.5F, 1, 1);
+    case Channel::kOcclusion: {
+      const float s = static_cast<float>(m.occlusion.strength);
+      return triangle.texture != nullptr ? Array4f(1 + s * (value - 1)) : value;
+    }
+    case Channel::kBaseColor: {
+      if (is_opaque(m)) value[3] = 1;
+      value *= triangle.factor;
+      if (mesh_->colors.empty()) return value;
+      Array4f color = Array4f::Zero();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto& c = mesh_->colors[idx(3 * triangle.index) + k];
+        color += static_cast<float>(bary[static_cast<int>(k)]) * Array4f(c[0], c[1], c[2], c[3]);
+      }
+      if (is_opaque(m)) color[3] = 1;
+      return value * color * Array4f(color[3], color[3], color[3], 1);
+    }
+    case Channel::kMetallicRoughness:
+    case Channel::kEmissive:
+      break;
+  }
+  return value * triangle.factor;
+}
+
+Array4f SourceLook::turned(const Triangle& triangle, const Vector3d& bary, Array4f value) const {
+  const int t = triangle.index;
+  const float strength = static_cast<float>(triangle.ref->strength);
+  Vector3d n(static_cast<double>(2 * value[0] - 1) * strength,
+             static_cast<double>(2 * value[1] - 1) * strength,
+             static_cast<double>(2 * value[2] - 1));
+  Vector3d normal = Vector3d::Zero();
+  for (int k = 0; k < 3; ++k) normal += bary[k] * shading_normal(*mesh_, t, k);
+  if (normal.norm() < 1e-12) return {0.5F, 0.5F, 1, 1};
+  normal.normalize();
+  const Eigen::Matrix3d from = frame(normal, mix(tangents_, t, bary));
+  const Eigen::Matrix3d to = frame(normal, mix(target_tangents_, t, bary));
+  n = to.transpose() * (from * n);
+  if (!n.allFinite() || n.norm() < 1e-12) return {0.5F, 0.5F, 1, 1};
+  const Eigen::Vector3f unit = n.normalized().cast<float>();
+  return {(unit[0] + 1) / 2, (unit[1] + 1) / 2, (unit[2] + 1) / 2, 1};
+}
+
+}  // namespace crosspatch
