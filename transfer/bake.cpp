@@ -6,7 +6,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 #include <set>
 
 #include "core/index.hpp"
@@ -28,6 +28,7 @@ constexpr double kMargin = 1e-4;
 
 /// The overlay, with the places of its triangles in the image.
 struct Carried {
+  int size = 0;  ///< of the image, texels a side
   TexturedMesh mesh;
   std::vector<std::array<Vector2d, 3>> texels;  ///< per triangle
   std::vector<Vector3d> target_bary;            ///< per corner, in its target face
@@ -40,6 +41,7 @@ Carried lay_over(const AttributedMesh& source,
                  const Unwrap& unwrap,
                  int size) {
   Carried carried;
+  carried.size = size;
   carried.mesh = assemble(source, target, attributes, overlay);
   carried.texels.reserve(overlay.triangles.size());
   carried.target_bary.reserve(3 * overlay.triangles.size());
@@ -312,6 +314,31 @@ std::vector<Eigen::Vector4d> tangents_at_corners(const TexturedMesh& target,
   return tangents;
 }
 
+/// One image over the target; of the base colour, texels are counted. Everything that is as large
+/// as an image is gone when it returns, but the image.
+Result<RasterImage> bake_channel(const Carried& carried,
+                                 const TexturedMesh& target,
+                                 const TriangleMesh& surface,
+                                 const Unwrap& unwrap,
+                                 Channel channel,
+                                 BakeStatistics& statistics) {
+  std::optional<SourceLook> look;
+  if (Result<SourceLook> made = SourceLook::make(carried.mesh, channel); made)
+    look = std::move(*made);
+  else
+    return tl::unexpected(made.error());
+  if (channel == Channel::kNormal) look->set_target_tangents(tangents_at_corners(target, carried));
+  BakeCanvas canvas = paint(carried, *look, unwrap, carried.size);
+  const bool has_alpha = channel == Channel::kBaseColor && look->has_alpha();
+  look.reset();
+  if (channel == Channel::kBaseColor) count_texels(canvas, unwrap, statistics);
+  // What lies across a seam has another tangent frame: gutters of normals are grown smoothly.
+  if (channel != Channel::kNormal)
+    continue_across_seams(canvas, surface, unwrap, AtlasOptions{.size = carried.size}.padding());
+  push_pull(canvas);
+  return finish(canvas, channel, has_alpha);
+}
+
 }  // namespace
 
 Result<BakedTexture> bake_texture(const AttributedMesh& source,
@@ -351,22 +378,13 @@ Result<BakedTexture> bake_texture(const AttributedMesh& source,
   constexpr int kClamp = 33071;
   for (const Channel channel : kChannels) {
     if (!is_needed(carried.mesh, used, channel)) continue;
-    Result<SourceLook> look = SourceLook::make(carried.mesh, channel);
-    if (!look) return tl::unexpected(look.error());
-    if (channel == Channel::kNormal)
-      look->set_target_tangents(tangents_at_corners(result.mesh, carried));
-    BakeCanvas canvas = paint(carried, *look, unwrap, size);
-    if (channel == Channel::kBaseColor) count_texels(canvas, unwrap, s);
-    // What lies across a seam has another tangent frame: gutters of normals are grown smoothly.
-    if (channel != Channel::kNormal)
-      continue_across_seams(canvas, surface, unwrap, AtlasOptions{.size = size}.padding());
-    push_pull(canvas);
-    const bool has_alpha = channel == Channel::kBaseColor && look->has_alpha();
-    const RasterImage image = finish(canvas, channel, has_alpha);
-    if (channel == Channel::kBaseColor) s.seam_error = seam_error(image, surface, unwrap);
+    const Result<RasterImage> image =
+        bake_channel(carried, result.mesh, surface, unwrap, channel, s);
+    if (!image) return tl::unexpected(image.error());
+    if (channel == Channel::kBaseColor) s.seam_error = seam_error(*image, surface, unwrap);
     ImageEncoding encoding = options.encoding;
     encoding.is_color = channel == Channel::kBaseColor || channel == Channel::kEmissive;
-    Result<std::vector<unsigned char>> bytes = encode_image_file(image, encoding);
+    Result<std::vector<unsigned char>> bytes = encode_image_file(*image, encoding);
     if (!bytes) return tl::unexpected(bytes.error());
     TextureRef& ref = texture_of(material, channel);
     ref.image = static_cast<int>(result.mesh.images.size());

@@ -117,9 +117,23 @@ Result<RasterImage> decode_image_file(const std::vector<unsigned char>& bytes) {
     return fail(ErrorCode::kBadInput,
                 fmt::format("image: {} channels, 1 to 4 are read", spec.nchannels));
   RasterImage image{spec.width, spec.height, spec.nchannels, {}};
-  image.values.resize(value_count(spec.width, spec.height, spec.nchannels));
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT16, image.values.data()))
-    return fail(ErrorCode::kBadInput, "image: " + first_line(input->geterror()));
+  const std::size_t count = value_count(spec.width, spec.height, spec.nchannels);
+  const auto read = [&](auto& values, OIIO::TypeDesc type) {
+    values.resize(count);
+    return input->read_image(0, 0, 0, spec.nchannels, type, values.data());
+  };
+  bool good = false;
+  if (spec.format == OIIO::TypeDesc::UINT8) {  // widened here: the library goes through floats
+    std::vector<std::uint8_t> narrow;
+    good = read(narrow, OIIO::TypeDesc::UINT8);
+    image.values.resize(count);
+    std::transform(narrow.begin(), narrow.end(), image.values.begin(), [](std::uint8_t v) {
+      return static_cast<std::uint16_t>(v * 257);
+    });
+  } else {
+    good = read(image.values, OIIO::TypeDesc::UINT16);
+  }
+  if (!good) return fail(ErrorCode::kBadInput, "image: " + first_line(input->geterror()));
   return image;
 }
 

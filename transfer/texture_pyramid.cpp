@@ -28,6 +28,17 @@ void store(const Eigen::Array4f& value, std::uint16_t* p) {
 TexturePyramid::Level halved(const TexturePyramid::Level& from) {
   TexturePyramid::Level to{std::max(1, from.width / 2), std::max(1, from.height / 2), {}};
   to.rgba.resize(4 * idx(to.width) * idx(to.height));
+  if (from.width == 2 * to.width && from.height == 2 * to.height) {
+    for (int y = 0; y < to.height; ++y)
+      for (int x = 0; x < 4 * to.width; ++x) {
+        const std::size_t row = 4 * idx(from.width);
+        const std::size_t first = 2 * idx(y) * row + 8 * idx(x / 4) + idx(x % 4);
+        const std::uint32_t sum = std::uint32_t{from.rgba[first]} + from.rgba[first + 4] +
+                                  from.rgba[first + row] + from.rgba[first + row + 4];
+        to.rgba[4 * idx(y) * idx(to.width) + idx(x)] = static_cast<std::uint16_t>((sum + 2) / 4);
+      }
+    return to;
+  }
   const auto span = [](int i, int size, int of) {
     return std::pair(static_cast<double>(i) * of / size, static_cast<double>(i + 1) * of / size);
   };
