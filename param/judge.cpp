@@ -161,20 +161,23 @@ Result<Verdict> play_finals(const Shape& source,
   const size_t best =
       static_cast<size_t>(std::min_element(energy.begin(), energy.end()) - energy.begin());
   if (maps[best] == nullptr) return tl::unexpected(started[0].error());
-  // What leads to the same map in the end is no rival.
-  constexpr double kSameMap = 0.05;
   double margin = kInfinity;
   for (size_t i = 0; i < count; ++i)
     if (maps[i] != nullptr && maps[best]->coarse_distance(*maps[i]) > kSameMap)
       margin = std::min(margin, energy[i] - energy[best]);
-  std::stable_sort(judgement.ranking.begin(),
-                   judgement.ranking.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.energy < b.energy; });
   std::stable_sort(
       last.begin(), last.end(), [&](size_t i, size_t j) { return energy[i] < energy[j]; });
-  Verdict verdict{std::move(judgement.ranking), {}, margin};
+  Verdict verdict;
+  verdict.margin = margin;
   for (const size_t i : last)
-    if (maps[i] != nullptr) verdict.maps.push_back(std::move(maps[i]));
+    if (maps[i] != nullptr)
+      verdict.maps.push_back({std::move(maps[i]),
+                              energy[i],
+                              judgement.ranking[judgement.finals[i].candidate].landmarks});
+  verdict.ranking = std::move(judgement.ranking);
+  std::stable_sort(verdict.ranking.begin(),
+                   verdict.ranking.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.energy < b.energy; });
   return verdict;
 }
 

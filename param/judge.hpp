@@ -45,13 +45,22 @@ Result<Judgement> judge(const Shape& source,
                         std::vector<Candidate> candidates,
                         const JudgeOptions& options = {});
 
+/// Mean distance on the target, in sqrt(area), up to which two coarse maps count as one: what leads
+/// to the same map in the end is no rival.
+constexpr double kSameMap = 0.05;
+
 /// What the finals decide.
 struct Verdict {
   std::vector<Candidate> ranking;  ///< finalists by energy, then the others by distortion
+  struct CoarseMap {
+    std::unique_ptr<SphereMap> map;
+    double energy = 0;                ///< see Candidate::energy
+    std::vector<Landmark> landmarks;  ///< of the candidate it was made for
+  };
   /// Coarse maps that were optimised to the end, by energy; the first is that of ranking[0].
-  std::vector<std::unique_ptr<SphereMap>> maps;
-  /// Energy of the best final whose map is another one (by more than 0.05 sqrt(area) in the mean)
-  /// minus the winner's; infinite if there is none.
+  std::vector<CoarseMap> maps;
+  /// Energy of the best final whose map is another one (farther than kSameMap) minus the winner's;
+  /// infinite if there is none.
   double margin = 0;
 };
 

@@ -15,6 +15,15 @@ struct MapQuality {
   double source_coverage = 0, target_coverage = 0;  ///< share of area that is mapped
 };
 
+/// Area-weighted mean of the energy over the pieces in the faces around each vertex, 4 where there
+/// is none.
+struct VertexDistortion {
+  Eigen::VectorXd source, target;
+};
+VertexDistortion vertex_distortion(const SurfaceMap& map,
+                                   const TriangleMesh& source,
+                                   const TriangleMesh& target);
+
 MapQuality measure_map(const SurfaceMap& map,
                        const TriangleMesh& source,
                        const TriangleMesh& target);

@@ -53,6 +53,24 @@ std::vector<int> side(const std::vector<Candidate>& candidates, int Landmark::*v
   return vertices;
 }
 
+/// Places of coarse maps that differ from each other, from each place on: differing[i] begins with
+/// i. To be asked before any of them is finished, which changes it.
+std::vector<std::vector<size_t>> differing_maps(const Verdict& verdict) {
+  const size_t count = verdict.maps.size();
+  std::vector<std::vector<size_t>> differing(count);
+  for (size_t first = 0; first < count; ++first) {
+    std::vector<size_t>& chosen = differing[first];
+    chosen.push_back(first);
+    for (size_t i = 0; i < count; ++i) {
+      const auto same = [&](size_t j) {
+        return i == j || verdict.maps[j].map->coarse_distance(*verdict.maps[i].map) <= kSameMap;
+      };
+      if (std::none_of(chosen.begin(), chosen.end(), same)) chosen.push_back(i);
+    }
+  }
+  return differing;
+}
+
 /// The map of two closed surfaces of any area.
 Result<MatchedMap> match_closed(const TriangleMesh& source,
                                 const TriangleMesh& target,
@@ -97,15 +115,31 @@ Result<MatchedMap> match_closed(const TriangleMesh& source,
   auto verdict = play_finals(shapes->first, shapes->second, std::move(*judgement), options.map);
   if (!verdict) return tl::unexpected(verdict.error());
   stage("map");
+  MatchedMap matched;
+  matched.ranking = std::move(verdict->ranking);
+  matched.margin = verdict->margin;
   // Where landmarks strain the map, the best coarse map may be too crumpled to be refined.
+  const auto differing =
+      options.alternatives > 0 ? differing_maps(*verdict) : std::vector<std::vector<size_t>>{};
+  size_t winner = 0;
   Result<MapResult> result = fail(ErrorCode::kInternal, "not tried");
-  for (const auto& map : verdict->maps) {
-    result = finish_map(*map, shapes->first, shapes->second);
-    if (result) break;
-    verdict->margin = 0;
+  for (size_t i = 0; i < verdict->maps.size() && !result; ++i) {
+    result = finish_map(*verdict->maps[i].map, shapes->first, shapes->second);
+    winner = i;
   }
   if (!result) return tl::unexpected(result.error());
-  return MatchedMap{std::move(verdict->ranking), verdict->margin, std::move(*result)};
+  if (winner > 0) matched.margin = 0;
+  matched.result = std::move(*result);
+  if (options.alternatives > 0) stage("others");
+  for (const size_t i : differing.empty() ? std::vector<size_t>{} : differing[winner]) {
+    if (i == winner || static_cast<int>(matched.alternatives.size()) >= options.alternatives)
+      continue;
+    const Verdict::CoarseMap& other = verdict->maps[i];
+    if (auto finished = finish_map(*other.map, shapes->first, shapes->second))
+      matched.alternatives.push_back(
+          {other.landmarks, other.energy - verdict->maps[winner].energy, std::move(*finished)});
+  }
+  return matched;
 }
 
 }  // namespace
@@ -120,15 +154,23 @@ Result<MatchedMap> match_and_map(const TriangleMesh& source,
   auto matched = match_closed(
       normalized(filled_source->mesh), normalized(filled_target->mesh), given, options);
   if (!matched || !(filled_source->was_open() || filled_target->was_open())) return matched;
-  MapResult& result = matched->result;
-  result.map = without_caps(result.map, *filled_source, *filled_target);
-  result.quality = measure_map(result.map, source, target);
-  matched->holes = {filled_source->holes, filled_target->holes};
-  for (Candidate& candidate : matched->ranking)
-    std::erase_if(candidate.landmarks, [&](const Landmark& l) {
+  const auto open = [&](MapResult& result) {
+    result.map = without_caps(result.map, *filled_source, *filled_target);
+    result.quality = measure_map(result.map, source, target);
+  };
+  const auto drop_caps = [&](std::vector<Landmark>& landmarks) {
+    std::erase_if(landmarks, [&](const Landmark& l) {
       return l.source_vertex >= filled_source->vertex_count ||
              l.target_vertex >= filled_target->vertex_count;
     });
+  };
+  matched->holes = {filled_source->holes, filled_target->holes};
+  open(matched->result);
+  for (Alternative& other : matched->alternatives) {
+    open(other.result);
+    drop_caps(other.landmarks);
+  }
+  for (Candidate& candidate : matched->ranking) drop_caps(candidate.landmarks);
   return matched;
 }
 

@@ -20,8 +20,17 @@ struct MatchOptions {
   /// This many landmarks decide the map alone; fewer are joined with proposed tips, so that no limb
   /// is left without a guide.
   int enough_landmarks = 16;
+  /// Other maps that are finished too, at most; see MatchedMap::alternatives.
+  int alternatives = 0;
   /// Called with the name of each stage when it begins; may be empty.
   std::function<void(const std::string&)> progress = {};
+};
+
+/// A map that was not chosen.
+struct Alternative {
+  std::vector<Landmark> landmarks;  ///< of the candidate it was made for
+  double margin = 0;                ///< its energy in the finals minus the winner's
+  MapResult result;
 };
 
 /// A map with all that led to it.
@@ -29,6 +38,9 @@ struct MatchedMap {
   std::vector<Candidate> ranking;  ///< by the finals and the judge; ranking[0] was mapped
   double margin = 0;  ///< Verdict::margin; 0 if the winner could not be refined and a rival was
   MapResult result;
+  /// Other ways to see it: finished maps of the finals, best first, of which each lies farther than
+  /// kSameMap from the winner and from those before it.
+  std::vector<Alternative> alternatives;
   /// Boundary loops of the source and of the target, which were closed for the map and opened
   /// again: with any, the map is one of parts.
   std::array<int, 2> holes{0, 0};

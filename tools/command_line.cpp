@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <map>
 #include <sstream>
 
 #include "tools/version.hpp"
+#include "tools/viewer.hpp"
 #include "transfer/bake.hpp"
 #include "transfer/write_mesh_files.hpp"
 
@@ -27,7 +29,14 @@ void add_common(CLI::App& command, CommonArguments& common) {
           "--threads", common.threads, "Threads to work with; results do not depend on it [all]")
       ->check(CLI::Range(1, kMaxThreads))
       ->type_name("N");
+  command
+      .add_option("--seed",
+                  common.seed,
+                  "Recorded in the report; nothing here is left to chance, the result is the same")
+      ->capture_default_str()
+      ->type_name("N");
   command.add_flag("-q,--quiet", common.quiet, "No progress lines");
+  command.add_flag("-v,--verbose", common.verbose, "Every figure of the run on standard error");
 }
 
 /// "1200x900"
@@ -53,10 +62,27 @@ std::string parse_views(const std::string& text, RenderArguments& arguments) {
   return arguments.views.empty() ? "--views: none is named" : "";
 }
 
+/// Sets `value` to what the word stands for; otherwise says what it may be.
+template <class T>
+std::string choose(const std::string& word,
+                   const std::vector<std::pair<std::string, T>>& choices,
+                   const char* option,
+                   T& value) {
+  std::string names;
+  for (const auto& [name, choice] : choices) {
+    if (word == name) {
+      value = choice;
+      return "";
+    }
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  return fmt::format("{}: '{}' is none of {}", option, word, names);
+}
+
 template <class Parse>
-void add_parsed(
+CLI::Option* add_parsed(
     CLI::App& command, const char* name, const char* what, const char* type, Parse parse) {
-  command
+  return command
       .add_option_function<std::string>(
           name,
           [parse](const std::string& text) {
@@ -86,7 +112,20 @@ void add_pair(CLI::App& command, PairArguments& pair) {
                   "Corresponding vertices 'source_vertex target_vertex' a line, counted from 0; "
                   "they are met exactly [found by the program]")
       ->type_name("FILE");
+  command
+      .add_option("--report",
+                  pair.report,
+                  "Write a page to look at the result, to judge it, and to place landmarks")
+      ->type_name("HTML");
   add_common(command, pair.common);
+}
+
+/// What is wrong with the report that is asked for, and what it asks for itself.
+std::string prepare_report(PairArguments& pair) {
+  if (pair.report.empty()) return "";
+  if (viewer_script().empty()) return "--report: this build has no viewer; see crosspatch doctor";
+  pair.files.alternatives = std::max(1, pair.files.alternatives);
+  return "";
 }
 
 CLI::App* add_match(CLI::App& app, MatchArguments& arguments) {
@@ -104,11 +143,11 @@ CLI::App* add_match(CLI::App& app, MatchArguments& arguments) {
       "default: tips, chosen by the maps through them; paper: critical points of the feature "
       "graphs by spectral matching, as published [default]",
       "default|paper",
-      [&arguments](const std::string& text) -> std::string {
-        if (text != "default" && text != "paper")
-          return fmt::format("--method: '{}' is none of default, paper", text);
-        arguments.method = text == "paper" ? MatchChoice::kPaper : MatchChoice::kDefault;
-        return "";
+      [&arguments](const std::string& text) {
+        return choose(text,
+                      {{"default", MatchChoice::kDefault}, {"paper", MatchChoice::kPaper}},
+                      "--method",
+                      arguments.method);
       });
   add_pair(*command, arguments.pair);
   command->footer(
@@ -127,6 +166,15 @@ CLI::App* add_map(CLI::App& app, MapArguments& arguments) {
                    "For each vertex of SOURCE its point on TARGET: 'face b0 b1 b2'")
       ->required()
       ->type_name("FILE");
+  command
+      ->add_option(
+          "--alternatives",
+          arguments.pair.files.alternatives,
+          "Write up to N other maps beside the chosen one, best first: FILE becomes FILE_2, "
+          "FILE_3 ... in front of its extension")
+      ->check(CLI::Range(0, 4))
+      ->capture_default_str()
+      ->type_name("N");
   command->add_option("--inverse", arguments.inverse, "The same from TARGET to SOURCE")
       ->type_name("FILE");
   command
@@ -151,30 +199,46 @@ CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
                    "(colours at vertices)")
       ->required()
       ->type_name("FILE");
-  command
-      ->add_option("--mode",
-                   arguments.mode,
-                   "keep: the images as they are, TARGET cut along their seams; bake: TARGET as it "
-                   "is, new images over its own texture coordinates, or over new ones where those "
-                   "do not serve [keep]")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, TransferMode>{
-          {"keep", TransferMode::kKeep}, {"bake", TransferMode::kBake}}))
-      ->type_name("keep|bake");
-  command->add_option("--size", arguments.size, "bake: texels a side of the new images [2048]")
+  add_parsed(
+      *command,
+      "--mode",
+      "keep: the images as they are, TARGET cut along their seams; bake: TARGET as it is, new "
+      "images over its own texture coordinates, or over new ones where those do not serve",
+      "keep|bake",
+      [&arguments](const std::string& text) {
+        return choose(text,
+                      {{"keep", TransferMode::kKeep}, {"bake", TransferMode::kBake}},
+                      "--mode",
+                      arguments.mode);
+      })
+      ->default_str("keep");
+  command->add_option("--size", arguments.size, "bake: texels a side of the new images")
       ->check(CLI::Range(kLeastBakeSize, kLargestBakeSize))
+      ->capture_default_str()
       ->type_name("TEXELS");
-  command->add_option("--image", arguments.image_format, "bake: kind of the new images [png]")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, ImageFormat>{
-          {"png", ImageFormat::kPng}, {"jpeg", ImageFormat::kJpeg}, {"exr", ImageFormat::kExr}}))
-      ->type_name("png|jpeg|exr");
-  command->add_option("--bits", arguments.bits, "bake: bits a channel of PNG images [8]")
+  add_parsed(
+      *command,
+      "--image",
+      "bake: kind of the new images",
+      "png|jpeg|exr",
+      [&arguments](const std::string& text) {
+        return choose(
+            text,
+            {{"png", ImageFormat::kPng}, {"jpeg", ImageFormat::kJpeg}, {"exr", ImageFormat::kExr}},
+            "--image",
+            arguments.image_format);
+      })
+      ->default_str("png");
+  command->add_option("--bits", arguments.bits, "bake: bits a channel of PNG images")
       ->check(CLI::IsMember({8, 16}))
+      ->capture_default_str()
       ->type_name("8|16");
   command
       ->add_option("--uv-tolerance",
                    arguments.uv_tolerance_texels,
-                   "keep: texels that texture coordinates may stray from the map [0.5]")
+                   "keep: texels that texture coordinates may stray from the map")
       ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str()
       ->type_name("TEXELS");
   command
       ->add_option("--map",
@@ -210,6 +274,14 @@ std::string contradiction(const TransferArguments& a) {
   return "";
 }
 
+CLI::App* add_doctor(CLI::App& app, DoctorArguments& arguments) {
+  CLI::App* command =
+      app.add_subcommand("doctor", "Say what the program is made of and what it can take");
+  add_common(*command, arguments.common);
+  command->footer("\nExamples:\n  crosspatch doctor");
+  return command;
+}
+
 void add_render(CLI::App& app, RenderArguments& arguments) {
   CLI::App* command =
       app.add_subcommand("render", "Draw one mesh, or two with corresponding colours, as a PNG");
@@ -237,15 +309,15 @@ void add_render(CLI::App& app, RenderArguments& arguments) {
       "checker [own for one mesh, position for two]",
       "own|position|checker",
       [&arguments](const std::string& text) -> std::string {
-        if (text == "own")
-          arguments.colors = DrawnColors::kOwn;
-        else if (text == "position")
-          arguments.colors = DrawnColors::kPosition;
-        else if (text == "checker")
-          arguments.colors = DrawnColors::kChecker;
-        else
-          return fmt::format("--texture: '{}' is none of own, position, checker", text);
-        return "";
+        DrawnColors colors{};
+        const std::string problem = choose(text,
+                                           {{"own", DrawnColors::kOwn},
+                                            {"position", DrawnColors::kPosition},
+                                            {"checker", DrawnColors::kChecker}},
+                                           "--texture",
+                                           colors);
+        if (problem.empty()) arguments.colors = colors;
+        return problem;
       });
   add_parsed(*command,
              "--views",
@@ -268,6 +340,35 @@ void add_render(CLI::App& app, RenderArguments& arguments) {
       "  crosspatch render cow.obj camel.off --map map.txt --texture checker --output pair.png");
 }
 
+bool quiet_and_verbose(const CLI::App& app) {
+  const CLI::App* command = app.get_subcommands().front();
+  const auto is_on = [&](const char* name) {
+    return command->get_option(name)->count() > 0 && command->get_option(name)->as<bool>();
+  };
+  return is_on("--quiet") && is_on("--verbose");
+}
+
+std::string version_text() {
+  std::string text = fmt::format("crosspatch {}", kVersion);
+  const char* separator = "\nwith ";
+  for (const LibraryVersion& library : kLibraries) {
+    if (*library.version == 0) continue;
+    text += fmt::format("{}{} {}", separator, library.name, library.version);
+    separator = ", ";
+  }
+  return text;
+}
+
+/// The options of the command that was given, under its name.
+std::string config_text(const CLI::App& app) {
+  const CLI::App* command = app.get_subcommands().front();
+  std::istringstream all(command->config_to_str(true, false));
+  std::string text = fmt::format("[{}]\n", command->get_name());
+  for (std::string line; std::getline(all, line);)
+    if (!line.ends_with("=\"\"")) text += line + '\n';  // not given, and without a default
+  return text;
+}
+
 }  // namespace
 
 const CommonArguments& common_arguments(const Command& command) {
@@ -277,6 +378,7 @@ const CommonArguments& common_arguments(const Command& command) {
     const CommonArguments& operator()(const MapArguments& a) const { return a.pair.common; }
     const CommonArguments& operator()(const TransferArguments& a) const { return a.pair.common; }
     const CommonArguments& operator()(const RenderArguments& a) const { return a.common; }
+    const CommonArguments& operator()(const DoctorArguments& a) const { return a.common; }
   };
   return std::visit(Common{}, command);
 }
@@ -284,7 +386,17 @@ const CommonArguments& common_arguments(const Command& command) {
 tl::expected<Command, CommandLineStop> parse_command_line(int argc, const char* const* argv) {
   CLI::App app("Finds how one surface corresponds to another and carries textures across",
                "crosspatch");
-  app.set_version_flag("--version", std::string("crosspatch ") + kVersion);
+  app.set_version_flag("--version", version_text());
+  app.set_config(
+         "--config",
+         "",
+         "Read options from a TOML file, those of a command under its name; the command line "
+         "has the last word")
+      ->type_name("FILE");
+  app.allow_config_extras(CLI::config_extras_mode::error);
+  bool print_config = false;
+  app.add_flag("--print-config", print_config, "Print the options in force as such a file, and end")
+      ->configurable(false);
   app.require_subcommand(1);
   app.footer(
       "\ncrosspatch COMMAND --help tells more about a command.\n"
@@ -299,9 +411,19 @@ tl::expected<Command, CommandLineStop> parse_command_line(int argc, const char* 
   const CLI::App* match_command = add_match(app, match);
   const CLI::App* map_command = add_map(app, map);
   const CLI::App* transfer_command = add_transfer(app, transfer);
+  DoctorArguments doctor;
+  const CLI::App* doctor_command = add_doctor(app, doctor);
   add_render(app, render);
+  for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    command->fallthrough();  // --config may stand behind the command too
+    command->configurable(false);
+  }
   try {
     app.parse(argc, argv);
+    if (quiet_and_verbose(app))
+      return tl::unexpected(
+          CommandLineStop{ExitCode::kUsage, "--quiet and --verbose contradict each other"});
+    if (print_config) return tl::unexpected(CommandLineStop{ExitCode::kDone, config_text(app)});
   } catch (const CLI::RequiredError& error) {
     // The library tells of the missing subcommand before it tells of a word it does not know.
     const bool unknown = app.get_subcommands().empty() && argc > 1;
@@ -309,6 +431,9 @@ tl::expected<Command, CommandLineStop> parse_command_line(int argc, const char* 
         ExitCode::kUsage,
         fmt::format("{} (see crosspatch --help)",
                     unknown ? fmt::format("'{}' is no command", argv[1]) : error.what())});
+  } catch (const CLI::ConfigError& error) {
+    return tl::unexpected(
+        CommandLineStop{ExitCode::kUsage, fmt::format("--config: {}", error.what())});
   } catch (const CLI::ParseError& error) {
     std::ostringstream out, usage;
     if (app.exit(error, out, usage) == 0)
@@ -317,8 +442,15 @@ tl::expected<Command, CommandLineStop> parse_command_line(int argc, const char* 
         CommandLineStop{ExitCode::kUsage, std::string(error.what()) + " (see crosspatch --help)"});
   }
   if (inspect_command->parsed()) return inspect;
+  if (doctor_command->parsed()) return doctor;
+  for (PairArguments* pair : {&match.pair, &map.pair, &transfer.pair})
+    if (const std::string wrong = prepare_report(*pair); !wrong.empty())
+      return tl::unexpected(CommandLineStop{ExitCode::kUsage, wrong});
   if (map_command->parsed()) return map;
   if (match_command->parsed()) {
+    if (match.method == MatchChoice::kPaper && !match.pair.report.empty())
+      return tl::unexpected(
+          CommandLineStop{ExitCode::kUsage, "--method paper makes no map: it takes no --report"});
     if (match.method == MatchChoice::kPaper && !match.pair.files.landmarks.empty())
       return tl::unexpected(
           CommandLineStop{ExitCode::kUsage, "--method paper takes no --landmarks"});

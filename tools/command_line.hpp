@@ -17,6 +17,8 @@ struct CommonArguments {
   std::string json;            ///< file for the run's report; empty = none
   std::optional<int> threads;  ///< at least 1; unset = as many as the machine has
   bool quiet = false;
+  bool verbose = false;  ///< more about each stage
+  int seed = 0;          ///< recorded; nothing in the program is left to chance
 };
 
 /// crosspatch inspect MESH
@@ -53,6 +55,7 @@ struct RenderArguments {
 struct PairArguments {
   CommonArguments common;
   PairFiles files;
+  std::string report;  ///< page to write; empty = none
 };
 
 /// How matches are found.
@@ -93,8 +96,17 @@ struct TransferArguments {
   int bits = 8;  ///< kBake: of a channel
 };
 
-using Command = std::
-    variant<InspectArguments, MatchArguments, MapArguments, TransferArguments, RenderArguments>;
+/// crosspatch doctor
+struct DoctorArguments {
+  CommonArguments common;
+};
+
+using Command = std::variant<InspectArguments,
+                             MatchArguments,
+                             MapArguments,
+                             TransferArguments,
+                             RenderArguments,
+                             DoctorArguments>;
 
 /// What the command shares with all others.
 const CommonArguments& common_arguments(const Command& command);

@@ -7,16 +7,23 @@ std::vector<std::string> files(const InspectArguments& arguments) {
   return {arguments.common.json};
 }
 std::vector<std::string> files(const MatchArguments& arguments) {
-  return {arguments.output, arguments.pair.common.json};
+  return {arguments.output, arguments.pair.report, arguments.pair.common.json};
 }
 std::vector<std::string> files(const MapArguments& arguments) {
-  return {arguments.output, arguments.inverse, arguments.overlay, arguments.pair.common.json};
+  return {arguments.output,
+          arguments.inverse,
+          arguments.overlay,
+          arguments.pair.report,
+          arguments.pair.common.json};
 }
 std::vector<std::string> files(const TransferArguments& arguments) {
-  return {arguments.output, arguments.pair.common.json};
+  return {arguments.output, arguments.pair.report, arguments.pair.common.json};
 }
 std::vector<std::string> files(const RenderArguments& arguments) {
   return {arguments.output, arguments.common.json};
+}
+std::vector<std::string> files(const DoctorArguments&) {
+  return {};
 }
 
 }  // namespace

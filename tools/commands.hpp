@@ -17,5 +17,6 @@ Result<ExitCode> run(const MatchArguments& arguments);
 Result<ExitCode> run(const MapArguments& arguments);
 Result<ExitCode> run(const TransferArguments& arguments);
 Result<ExitCode> run(const RenderArguments& arguments);
+Result<ExitCode> run(const DoctorArguments& arguments);
 
 }  // namespace crosspatch

@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
-# install_dependencies.sh [GROUP...]: installs what is missing from Debian 12.
-#   build  compiler and libraries (openimageio-tools: the CMake files of the library ask for them)
+# install_dependencies.sh [GROUP...]: installs what is missing from Debian 12, and from npm what the
+# page of reports is made of.
+#   build  compiler and libraries (openimageio-tools: the CMake files of the library ask for them),
+#          Node.js for npm, three.js
 #   demo   jq, to read the report
-#   test   Node.js and Chromium, for outside readers of glTF
+#   test   Chromium, for outside readers of what we write
 #   check  clang-format and clang-tidy
 # Asks for nothing when everything is there already; uses sudo only when not root.
 set -euo pipefail
@@ -16,7 +18,7 @@ demo=(jq)
 test=(chromium)
 check=(clang-format clang-tidy)
 # Node.js may come from elsewhere than Debian; then its package is not asked for.
-command -v node >/dev/null && command -v npm >/dev/null || test+=(nodejs npm)
+command -v node >/dev/null && command -v npm >/dev/null || build+=(nodejs npm)
 
 wanted=()
 for group in "${@:-build}"; do
@@ -34,11 +36,21 @@ for package in "${wanted[@]}"; do
   status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
   [ "$status" = installed ] || missing+=("$package")
 done
-[ ${#missing[@]} -eq 0 ] && exit 0
+if [ ${#missing[@]} -gt 0 ]; then
+  echo "installing from Debian: ${missing[*]}" >&2
+  as_root=()
+  [ "$(id -u)" -eq 0 ] || as_root=(sudo)
+  export DEBIAN_FRONTEND=noninteractive
+  "${as_root[@]}" apt-get update -qq
+  "${as_root[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >&2
+fi
 
-echo "installing from Debian: ${missing[*]}" >&2
-as_root=()
-[ "$(id -u)" -eq 0 ] || as_root=(sudo)
-export DEBIAN_FRONTEND=noninteractive
-"${as_root[@]}" apt-get update -qq
-"${as_root[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >&2
+viewer=$(dirname "${BASH_SOURCE[0]}")/viewer
+case " ${*:-build} " in
+  *" build "*)
+    # npm writes this file last; it is older than the wanted versions after an update.
+    if [ ! "$viewer/node_modules/.package-lock.json" -nt "$viewer/package-lock.json" ]; then
+      echo "installing from npm: three.js" >&2
+      (cd "$viewer" && npm ci --no-audit --no-fund --loglevel=error >&2)
+    fi ;;
+esac

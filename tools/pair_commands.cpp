@@ -1,6 +1,8 @@
 // crosspatch match and map: a run over a pair, then its outputs.
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "tools/commands.hpp"
 #include "tools/map_text.hpp"
 #include "tools/overlay_text.hpp"
@@ -32,6 +34,30 @@ std::string matching_text(const Matching& matching,
                         of_target[static_cast<std::size_t>(match.target_vertex)],
                         match.confidence);
   return text;
+}
+
+/// `path` for the map with this number, from 1: the first has the name that was asked for.
+std::string numbered(const std::string& path, int number) {
+  if (number == 1) return path;
+  std::filesystem::path name(path);
+  const std::string extension = name.extension().string();
+  name.replace_extension();
+  return fmt::format("{}_{}{}", name.string(), number, extension);
+}
+
+std::vector<OutputFile> map_outputs(const MapArguments& arguments,
+                                    const PairRun& run,
+                                    const SurfaceMap& map,
+                                    int number) {
+  const PreparedMesh &source = run.source.prepared, &target = run.target.prepared;
+  std::vector<OutputFile> outputs = {
+      {numbered(arguments.output, number), map_text(map_of_file_vertices(map, source, target))}};
+  if (!arguments.inverse.empty())
+    outputs.push_back({numbered(arguments.inverse, number),
+                       map_text(map_of_file_vertices(inverse(map), target, source))});
+  if (!arguments.overlay.empty())
+    outputs.push_back({numbered(arguments.overlay, number), overlay_text(map, source, target)});
+  return outputs;
 }
 
 Result<ExitCode> run_paper_match(const MatchArguments& arguments) {
@@ -68,7 +94,8 @@ Result<ExitCode> run(const MatchArguments& arguments) {
   return finish(
       {{arguments.output, matching_text(matching, run->source.prepared, run->target.prepared)}},
       std::move(report),
-      arguments.pair.common,
+      arguments.pair,
+      *run,
       progress);
 }
 
@@ -76,18 +103,14 @@ Result<ExitCode> run(const MapArguments& arguments) {
   Progress progress(arguments.pair.common.quiet, kMapStages);
   const Result<PairRun> run = run_pair(arguments.pair.files, progress);
   if (!run) return tl::unexpected(run.error());
-  const PreparedMesh &source = run->source.prepared, &target = run->target.prepared;
-  const SurfaceMap& map = run->matched.result.map;
-  std::vector<OutputFile> outputs = {
-      {arguments.output, map_text(map_of_file_vertices(map, source, target))}};
-  if (!arguments.inverse.empty())
-    outputs.push_back(
-        {arguments.inverse, map_text(map_of_file_vertices(inverse(map), target, source))});
-  if (!arguments.overlay.empty())
-    outputs.push_back({arguments.overlay, overlay_text(map, source, target)});
+  std::vector<OutputFile> outputs = map_outputs(arguments, *run, run->matched.result.map, 1);
+  int number = 1;
+  for (const Alternative& other : run->matched.alternatives)
+    for (OutputFile& file : map_outputs(arguments, *run, other.result.map, ++number))
+      outputs.push_back(std::move(file));
   RunReport report = pair_report(arguments.pair, *run);
   report.command = "map";
-  return finish(std::move(outputs), std::move(report), arguments.pair.common, progress);
+  return finish(std::move(outputs), std::move(report), arguments.pair, *run, progress);
 }
 
 }  // namespace crosspatch

@@ -4,12 +4,13 @@
 
 namespace crosspatch {
 
-/// Two surfaces and what a run is told about them.
+/// Two surfaces and what a run over them is told.
 struct PairFiles {
   std::string source;
   std::string target;
   std::string landmarks;  ///< file of corresponding vertices; empty = none
   std::string map;        ///< file of a map of the two to use; empty = find one
+  int alternatives = 0;   ///< other maps to be made, at most
   std::string texture;    ///< what the source wears, see give_texture; empty = its own
 };
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "tools/pair_page.hpp"
+
 namespace crosspatch {
 namespace {
 
@@ -51,6 +53,8 @@ std::map<std::string, double> map_figures(const MatchedMap& matched) {
   figures["coarse_energy"] = matched.ranking.front().energy;
   figures["candidates"] = static_cast<double>(matched.ranking.size());
   figures["margin"] = matched.margin;
+  for (std::size_t i = 0; i < matched.alternatives.size(); ++i)
+    figures[fmt::format("margin_{}", i + 2)] = matched.alternatives[i].margin;
   return figures;
 }
 
@@ -95,11 +99,29 @@ Result<ExitCode> finish(std::vector<OutputFile> outputs,
                         const Progress& progress) {
   for (const OutputFile& output : outputs) report.outputs.push_back(output.path);
   report.stages = progress.records();
+  report.options["seed"] = fmt::format("{}", common.seed);
   if (!common.json.empty()) outputs.push_back({common.json, report_json(report)});
   if (const Status written = write_output_files(outputs); !written)
     return tl::unexpected(written.error());
+  if (common.verbose)
+    for (const auto& [name, value] : report.quality) print_figure(name, value);
   for (const std::string& warning : report.warnings) print_warning(warning);
   return static_cast<ExitCode>(report.exit_code);
+}
+
+Result<ExitCode> finish(std::vector<OutputFile> outputs,
+                        RunReport report,
+                        const PairArguments& arguments,
+                        const PairRun& run,
+                        Progress& progress) {
+  if (!arguments.report.empty()) {
+    progress.begin("report");
+    Result<std::string> page = pair_page(run, report);
+    if (!page) return tl::unexpected(page.error());
+    progress.end(fmt::format("{:.1f} MB", static_cast<double>(page->size()) / 1e6));
+    outputs.push_back({arguments.report, std::move(*page)});
+  }
+  return finish(std::move(outputs), std::move(report), arguments.common, progress);
 }
 
 }  // namespace crosspatch

@@ -22,4 +22,11 @@ Result<ExitCode> finish(std::vector<OutputFile> outputs,
                         const CommonArguments& common,
                         const Progress& progress);
 
+/// The same for a run over a pair that has a map, with the page that was asked for.
+Result<ExitCode> finish(std::vector<OutputFile> outputs,
+                        RunReport report,
+                        const PairArguments& arguments,
+                        const PairRun& run,
+                        Progress& progress);
+
 }  // namespace crosspatch

@@ -43,8 +43,9 @@ Result<std::vector<Landmark>> read_landmarks(const std::string& path,
       .map_error([&](const Error& error) { return with_path(path, error); });
 }
 
-Result<MatchedMap> find_map(const PairRun& run, Progress& progress) {
+Result<MatchedMap> find_map(const PairRun& run, int alternatives, Progress& progress) {
   MatchOptions options;
+  options.alternatives = alternatives;
   options.progress = [&progress](const std::string& stage) { progress.begin(stage); };
   return match_and_map(run.source.prepared.mesh, run.target.prepared.mesh, run.landmarks, options);
 }
@@ -137,8 +138,8 @@ Result<PairRun> run_pair(const PairFiles& files, Progress& progress) {
   Result<PairRun> read = read_pair(files, progress);
   if (!read) return read;
   PairRun run = std::move(*read);
-  Result<MatchedMap> matched =
-      files.map.empty() ? find_map(run, progress) : read_map(files.map, run, progress);
+  Result<MatchedMap> matched = files.map.empty() ? find_map(run, files.alternatives, progress)
+                                                 : read_map(files.map, run, progress);
   if (!matched) return tl::unexpected(matched.error());
   run.matched = std::move(*matched);
   progress.end(map_summary(run.matched));

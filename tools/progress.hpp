@@ -30,6 +30,9 @@ class Progress {
   [[nodiscard]] const std::vector<StageRecord>& records() const { return records_; }
 
  private:
+  /// ", about N s left", or nothing where that cannot be told.
+  [[nodiscard]] std::string time_left() const;
+
   bool quiet_;
   bool terminal_;
   int stages_;
@@ -37,6 +40,9 @@ class Progress {
   std::chrono::steady_clock::time_point begun_;
   std::vector<StageRecord> records_;
 };
+
+/// One line of a figure on standard error.
+void print_figure(const std::string& name, double value);
 
 /// One warning line on standard error.
 void print_warning(const std::string& warning);

@@ -119,7 +119,7 @@ Result<ExitCode> run(const TransferArguments& arguments) {
   report.command = "transfer";
   report.options = options_in_force(arguments);
   for (const auto& [name, value] : result->figures) report.quality[name] = value;
-  return finish(std::move(outputs), std::move(report), arguments.pair.common, progress);
+  return finish(std::move(outputs), std::move(report), arguments.pair, *run, progress);
 }
 
 }  // namespace crosspatch

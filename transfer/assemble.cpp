@@ -93,7 +93,7 @@ class Assembly {
     if (index < 0) {
       index = static_cast<int>(mesh_.materials.size());
       Material m;
-      m.name = triangle.mapped ? "default" : "unmapped";
+      m.name = triangle.mapped ? "default" : kUnmappedMaterial;
       // Mid grey, so that missing parts are neither black nor taken for white fur.
       if (!triangle.mapped) m.base_color_factor = {0.5, 0.5, 0.5, 1};
       mesh_.materials.push_back(m);

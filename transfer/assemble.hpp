@@ -5,6 +5,9 @@
 
 namespace crosspatch {
 
+/// Name of the material of triangles that nothing is mapped to.
+constexpr const char* kUnmappedMaterial = "unmapped";
+
 /// The overlay as a mesh for export: materials and images of `source`, places, normals and node
 /// transform of `target`. Triangles keep their order. Those without a map get the grey material
 /// "unmapped", mapped ones without a material the white one "default".

@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
+#include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
@@ -12,6 +15,7 @@
 #include "tools/map_text.hpp"
 #include "tools/sha256.hpp"
 #include "tools/text_lines.hpp"
+#include "tools/viewer.hpp"
 
 namespace crosspatch {
 namespace {
@@ -20,17 +24,29 @@ using test::Program;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
+TEST_F(Program, DoctorTellsVersionsAndLimits) {
+  const test::Outcome told = run("doctor");
+  EXPECT_EQ(told.exit_code, 0);
+  for (const char* word : {"OpenImageIO", "threads", "20 million", "reports"})
+    EXPECT_THAT(told.out, HasSubstr(word));
+}
+
 TEST_F(Program, HelpAndVersionGoToStandardOutput) {
-  for (const char* command : {"", "inspect ", "match ", "map ", "transfer ", "render "}) {
+  for (const char* command :
+       {"", "inspect ", "match ", "map ", "transfer ", "render ", "doctor "}) {
     const test::Outcome help = run(std::string(command) + "--help");
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_THAT(help.out, HasSubstr("Usage:"));
     EXPECT_EQ(help.err, "");
     if (*command != '\0') {
-      EXPECT_THAT(help.out, HasSubstr("Examples:\n  crosspatch " + std::string(command)));
+      EXPECT_THAT(
+          help.out,
+          HasSubstr("Examples:\n  crosspatch " + std::string(command, std::strlen(command) - 1)));
     }
   }
-  EXPECT_THAT(run("--version").out, testing::MatchesRegex("crosspatch [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+  EXPECT_THAT(run("--version").out,
+              testing::MatchesRegex(
+                  "crosspatch [0-9]+\\.[0-9]+\\.[0-9]+\nwith Boost .*tinygltf [0-9.]+\n"));
 }
 
 TEST_F(Program, WrongUsageEndsWithTwo) {
@@ -206,12 +222,66 @@ TEST_F(PairOfSurfaces, BakedImagesLieBesideTheirMesh) {
   EXPECT_FALSE(report["quality"].contains("margin"));  // nothing was chosen
 }
 
+TEST_F(PairOfSurfaces, ReportIsOnePageWithBothMaps) {
+  if (viewer_script().empty()) GTEST_SKIP() << "this build has no viewer";
+  ASSERT_EQ(
+      run("map source.obj target.off -q -o out/map --report out/page.html --json out/j").exit_code,
+      0);
+  const std::string page = test::read_text(folder / "out/page.html");
+  const std::string begin = "<script id=\"data\" type=\"application/json\">";
+  const std::size_t at = page.find(begin);
+  ASSERT_NE(at, std::string::npos);
+  const std::size_t first = at + begin.size(), end = page.find("</script>", first);
+  const auto data = nlohmann::json::parse(page.substr(first, end - first));
+  const auto report = nlohmann::json::parse(test::read_text(folder / "out/j"));
+  EXPECT_EQ(data["maps"][0]["name"], "chosen");
+  EXPECT_EQ(data["maps"].size(), report["quality"].contains("margin_2") ? 2u : 1u);
+  EXPECT_EQ(data["graphs"]["source"]["nodes"].size() % 2, 0u);  // Euler's characteristic is even
+  EXPECT_FALSE(data["figures"].empty());
+  for (const char* fetching : {"<script src", "<link", "<img"})
+    EXPECT_EQ(page.find(fetching), std::string::npos) << fetching;
+}
+
+TEST_F(PairOfSurfaces, AlternativesGetNumberedNames) {
+  ASSERT_EQ(
+      run("map source.obj target.off -q -o out/m.txt --alternatives 2 --json out/j").exit_code, 0);
+  const auto report = nlohmann::json::parse(test::read_text(folder / "out/j"));
+  const bool another = report["quality"].contains("margin_2");
+  EXPECT_EQ(std::filesystem::exists(folder / "out/m_2.txt"), another);
+  if (another) {
+    EXPECT_NE(test::read_text(folder / "out/m.txt"), test::read_text(folder / "out/m_2.txt"));
+    EXPECT_GE(report["quality"]["margin_2"].get<double>(),
+              report["quality"]["margin"].get<double>());
+  }
+}
+
+TEST_F(PairOfSurfaces, ConfigurationIsPrintedAndReadBack) {
+  const test::Outcome printed =
+      run("transfer source.obj target.off -o out/a.glb --size 32 --mode bake -q --print-config");
+  ASSERT_EQ(printed.exit_code, 0) << printed.err;
+  EXPECT_THAT(printed.out, testing::HasSubstr("[transfer]\n"));
+  EXPECT_THAT(printed.out, testing::HasSubstr("size=32"));
+  EXPECT_THAT(written(), testing::IsEmpty());
+  test::write_text(folder / "c.toml", printed.out);
+  EXPECT_EQ(run("transfer --config c.toml").exit_code, 0);
+  EXPECT_THAT(written(), testing::ElementsAre("a.glb"));
+  // The command line has the last word.
+  EXPECT_EQ(run("transfer --config c.toml -o out/b.glb").exit_code, 0);
+  EXPECT_THAT(written(), testing::UnorderedElementsAre("a.glb", "b.glb"));
+  test::write_text(folder / "wrong.toml", "[transfer]\nsiez=32\n");
+  const test::Outcome wrong =
+      run("transfer source.obj target.off -o out/c.glb --config wrong.toml");
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.err, testing::HasSubstr("transfer.siez"));
+}
+
 TEST_F(PairOfSurfaces, TransferOptionsThatContradictAreRefused) {
   const std::string pair = "transfer source.obj target.off --mode bake --output out/";
   for (const auto& [options, line] : std::map<std::string, std::string>{
            {"a.fbx", "--output: 'out/a.fbx' is no .glb, .gltf, .obj or .ply"},
            {"a.glb --image exr", "--image exr: only an .obj can refer to EXR images"},
            {"a.glb --image jpeg --bits 16", "--bits 16: a JPEG has 8"},
+           {"a.glb -q -v", "--quiet and --verbose contradict each other"},
            {"a.glb --map m --landmarks l",
             "--map and --landmarks: a given map needs no landmarks"}}) {
     const test::Outcome done = run(pair + options);

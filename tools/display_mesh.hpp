@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "param/surface_map.hpp"
+#include "transfer/source_attributes.hpp"
+#include "transfer/textured_mesh.hpp"
+
+namespace crosspatch {
+
+/// A surface as a page draws it, with what is known at the corners of its triangles.
+///
+/// Invariants: `corner` and `place` have one entry a corner of `mesh`, 3 a triangle.
+struct DisplayMesh {
+  TexturedMesh mesh;
+  std::vector<SurfacePoint> corner;  ///< on the prepared mesh
+  std::vector<Vector3d> place;  ///< in the source's coordinates: itself, or where it comes from
+};
+
+/// The surface with its own texture; places are its own.
+Result<DisplayMesh> display_source(const AttributedMesh& source);
+
+/// The target with the source's texture, cut along its seams and wherever places, linear on each
+/// triangle, would stray by more than `tolerance` (in the source's largest extent) from the map.
+/// Corners without a map have NaN places.
+Result<DisplayMesh> display_target(const AttributedMesh& source,
+                                   const AttributedMesh& target,
+                                   const SurfaceMap& map,
+                                   double tolerance);
+
+}  // namespace crosspatch
