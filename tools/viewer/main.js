@@ -9,7 +9,7 @@ import { buildPanel } from './panel.js';
 import { layers, loadTextures, surfaceMesh } from './surface.js';
 
 const data = readData(document.getElementById('data').textContent);
-const state = { layer: 0, beside: false, linked: true, adding: false, shown: new Set() };
+const state = { layer: 0, up: 'y', beside: false, linked: true, adding: false, shown: new Set() };
 const mapOf = { source: 0, target: 0, other: 1 }; // `other` shows the runner-up beside the target
 const sides = data.maps.length > 1 ? ['source', 'target', 'other'] : ['source', 'target'];
 const surfaceOf = (side) => (side === 'source' ? 'source' : 'target');
@@ -21,6 +21,7 @@ const panel = buildPanel(data, layers, draw.overlays, {
   overlay: toggleOverlay,
   beside: toggleBeside,
   link: toggleLink,
+  up: turnUp,
   add: () => setAdding(!state.adding),
   remove: removeLandmark,
   save: saveLandmarks,
@@ -98,6 +99,13 @@ function toggleLink() {
   state.linked = !state.linked;
   if (state.linked) cameraMoved(panes.source);
   panel.showLink(state.linked);
+  requestDraw();
+}
+
+function turnUp() {
+  state.up = { y: 'z', z: 'x', x: 'y' }[state.up];
+  for (const side of sides) panes[side].setUp(state.up);
+  panel.showUp(state.up);
   requestDraw();
 }
 
@@ -259,6 +267,7 @@ window.addEventListener('keydown', (event) => {
   else if (overlayKeys[key]) toggleOverlay(overlayKeys[key]);
   else if (key === 'r') toggleBeside();
   else if (key === 'l') toggleLink();
+  else if (key === 'u') turnUp();
   else if (key === 'n') setAdding(!state.adding);
   else if (key === 'delete' || key === 'backspace') removeLandmark();
   else if (key === 'w') saveLandmarks();

@@ -2,13 +2,17 @@
 import { Group, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
+const fieldOfView = 35; // degrees, across the shorter side
+
 export class Pane {
   /** `element` lies over the part of the page that the pane is drawn in and takes its input. */
   constructor(element, changed) {
     this.element = element;
     this.scene = new Scene();
-    this.camera = new PerspectiveCamera(35, 1, 0.01, 50);
-    this.camera.position.set(1.1, 0.6, 2.9);
+    this.world = new Group(); // turned so that the mesh's own upward axis points up
+    this.scene.add(this.world);
+    this.camera = new PerspectiveCamera(fieldOfView, 1, 0.01, 50);
+    this.camera.position.set(1.2, 0.7, 3.2);
     this.controls = new OrbitControls(this.camera, element);
     this.controls.addEventListener('change', () => changed(this));
     this.raycaster = new Raycaster();
@@ -18,24 +22,30 @@ export class Pane {
 
   setSurface(surface) {
     this.surface = surface;
-    this.scene.add(surface);
+    this.world.add(surface);
   }
 
   /** Puts a group of overlays in place of the one with the same key. */
   setOverlay(key, group, visible) {
-    if (this.on[key]) this.scene.remove(this.on[key]);
+    if (this.on[key]) this.world.remove(this.on[key]);
     const holder = new Group();
     holder.add(group);
     holder.visible = visible;
     this.on[key] = holder;
     holder.scale.copy(this.surface.scale);
     holder.position.copy(this.surface.position);
-    this.scene.add(holder);
+    this.world.add(holder);
   }
 
   /** Size of points, in the surface's own units. */
   get pointSize() {
     return 0.012 / this.surface.scale.x;
+  }
+
+  /** Turns the mesh so that its axis 'x', 'y' or 'z' points up. */
+  setUp(axis) {
+    this.world.rotation.set(axis === 'z' ? -Math.PI / 2 : 0, 0, axis === 'x' ? Math.PI / 2 : 0);
+    this.world.updateMatrixWorld(true);
   }
 
   follow(other) {
@@ -46,6 +56,9 @@ export class Pane {
 
   resize(width, height) {
     this.camera.aspect = width / Math.max(height, 1);
+    // The shorter side of the pane holds the unit ball.
+    const half = Math.tan((fieldOfView / 2) * (Math.PI / 180)) / Math.min(1, this.camera.aspect);
+    this.camera.fov = 2 * Math.atan(half) * (180 / Math.PI);
     this.camera.updateProjectionMatrix();
   }
 

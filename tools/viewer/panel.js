@@ -123,6 +123,11 @@ export function buildPanel(data, layers, overlays, actions) {
   );
   beside.disabled = data.maps.length < 2;
   const link = toggle('Link cameras', 'Turn both together', true, actions.link);
+  const up = element(
+    'button',
+    { title: "The axis of the files that points up", onclick: actions.up },
+    'Up: y',
+  );
   const add = toggle('Add landmark', 'Click a place on either surface', false, actions.add);
   const remove = element('button', { onclick: actions.remove, disabled: '' }, 'Delete landmark');
   const save = element('button', { onclick: actions.save, disabled: '' }, 'Save landmarks');
@@ -141,6 +146,7 @@ export function buildPanel(data, layers, overlays, actions) {
         ...overlayButtons,
         beside,
         link,
+        up,
       ),
       element(
         'div',
@@ -176,6 +182,7 @@ export function buildPanel(data, layers, overlays, actions) {
           ['C A G M S', 'critical points, arcs, graph, matches, seams'],
           ['R', 'runner-up beside the chosen map'],
           ['L', 'link cameras'],
+          ['U', 'another axis up'],
           ['N', 'new landmark'],
           ['Del', 'delete the chosen landmark'],
           ['W', 'save landmarks'],
@@ -208,6 +215,7 @@ export function buildPanel(data, layers, overlays, actions) {
       panes.other.hidden = !on;
       stage.classList.toggle('beside', on);
     },
+    showUp: (axis) => (up.textContent = `Up: ${axis}`),
     showLink: (on) => press(link, on),
     showAdding: (on) => {
       press(add, on);
