@@ -49,7 +49,7 @@ Result<std::string> encode_ply(const TexturedMesh& mesh) {
   std::map<PlyVertex, std::int32_t> number;
   std::string vertices, faces;
   for (int t = 0; t < mesh.triangle_count(); ++t) {
-    const SourceLook::Triangle triangle = look->triangle(t, {});
+    const SourceLook::Triangle triangle = look->triangle(t);
     append_bytes(faces, std::uint8_t{3});
     for (int k = 0; k < 3; ++k) {
       const Vector3d p = linear * mesh.positions.row(mesh.triangles(t, k)).transpose() + shift;

@@ -97,7 +97,7 @@ Status SourceLook::load(int material) {
   return {};
 }
 
-SourceLook::Triangle SourceLook::triangle(int t, const std::array<Vector2d, 3>& corner) const {
+SourceLook::Triangle SourceLook::triangle(int t) const {
   const Material& m = mesh_->materials[idx(mesh_->material[idx(t)])];
   const TextureRef& ref = texture_of(m, channel_);
   Triangle triangle;
@@ -106,16 +106,24 @@ SourceLook::Triangle SourceLook::triangle(int t, const std::array<Vector2d, 3>& 
   triangle.factor = factor(m, channel_);
   if (ref.image < 0) return triangle;
   triangle.texture = &textures_.at({ref.image, channel_ == Channel::kBaseColor && !is_opaque(m)});
+  for (std::size_t k = 0; k < 3; ++k)
+    triangle.uv[k] =
+        transformed(mesh_->uv_sets[idx(ref.uv_set)][idx(3 * t) + k], ref.transform).cast<float>();
+  return triangle;
+}
+
+SourceLook::Triangle SourceLook::triangle(int t, const std::array<Vector2d, 3>& corner) const {
+  Triangle triangle = this->triangle(t);
+  if (triangle.texture == nullptr) return triangle;
   std::array<Vector2d, 3> uv;
-  for (std::size_t k = 0; k < 3; ++k) {
-    uv[k] = transformed(mesh_->uv_sets[idx(ref.uv_set)][idx(3 * t) + k], ref.transform);
-    triangle.uv[k] = uv[k].cast<float>();
-  }
+  for (std::size_t k = 0; k < 3; ++k)
+    uv[k] = transformed(mesh_->uv_sets[idx(triangle.ref->uv_set)][idx(3 * t) + k],
+                        triangle.ref->transform);
   Eigen::Matrix2d texels, change;
   texels << corner[1] - corner[0], corner[2] - corner[0];
   change << uv[1] - uv[0], uv[2] - uv[0];
-  if (texels.determinant() != 0)
-    triangle.footprint = footprint(*triangle.texture, change * texels.inverse());
+  const Eigen::Matrix2d step = change * texels.inverse();
+  if (step.allFinite()) triangle.footprint = footprint(*triangle.texture, step);
   return triangle;
 }
 

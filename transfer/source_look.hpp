@@ -42,7 +42,11 @@ class SourceLook {
   /// kBadInput when an image in use cannot be decoded.
   static Result<SourceLook> make(const TexturedMesh& mesh, Channel channel);
 
-  /// `corner`: where the corners of triangle t lie in the image to be painted, in texels.
+  /// For values at points, unfiltered.
+  [[nodiscard]] Triangle triangle(int t) const;
+
+  /// For means over texels. `corner`: where the corners of triangle t lie in the image to be
+  /// painted, in texels.
   [[nodiscard]] Triangle triangle(int t, const std::array<Vector2d, 3>& corner) const;
 
   [[nodiscard]] Eigen::Array4f at(const Triangle& triangle, const Vector3d& bary) const;

@@ -108,10 +108,10 @@ Footprint footprint(const TexturePyramid& texture, const Eigen::Matrix2d& step) 
   const double needed = std::max({shortest, along_x / kMostTaps, along_y / kMostTaps, 1.0});
   Footprint f;
   f.level =
-      std::min(static_cast<int>(std::log2(needed)), static_cast<int>(texture.levels.size()) - 1);
+      static_cast<int>(std::min(std::log2(needed), static_cast<double>(texture.levels.size() - 1)));
   const double level_texel = std::ldexp(1.0, f.level);
   const auto taps = [&](double length) {
-    return std::clamp(static_cast<int>(std::ceil(length / level_texel)), 1, kMostTaps);
+    return static_cast<int>(std::clamp(std::ceil(length / level_texel), 1.0, double{kMostTaps}));
   };
   f.taps_x = taps(along_x);
   f.taps_y = taps(along_y);

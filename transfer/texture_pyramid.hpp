@@ -33,9 +33,9 @@ struct Footprint {
   Eigen::Matrix2f step = Eigen::Matrix2f::Zero();  ///< UV per texel to be filled, columns x and y
 };
 
-/// `step`: UV per texel to be filled, columns x and y. Taps lie on a grid in the texel to be
-/// filled, no further apart than the texels of the level, which is the finest that needs at most 8
-/// taps along either side.
+/// `step`: UV per texel to be filled, columns x and y, finite. Taps lie on a grid in the texel to
+/// be filled, no further apart than the texels of the level, which is the finest that needs at most
+/// 8 taps along either side.
 Footprint footprint(const TexturePyramid& texture, const Eigen::Matrix2d& step);
 
 /// The mean over the footprint around `uv`, with the wrapping of `ref`. Values in [0, 1].
