@@ -76,4 +76,10 @@ Result<Eigen::MatrixXd> curvature_fields(const TriangleMesh& mesh,
   return fields;
 }
 
+Eigen::VectorXd integrated_mean_curvature(const TriangleMesh& mesh) {
+  const auto laplacian = compute_laplacian(mesh);
+  return laplacian ? mean_curvatures(mesh, laplacian->L)
+                   : Eigen::VectorXd(Eigen::VectorXd::Zero(mesh.vertex_count()));
+}
+
 }  // namespace crosspatch

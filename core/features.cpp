@@ -6,6 +6,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "core/chirality.hpp"
 #include "core/geodesics.hpp"
 
 namespace crosspatch {
@@ -40,6 +41,7 @@ Result<ShapeFeatures> compute_features(const TriangleMesh& mesh, const FeatureOp
   features.log_adf = auto_diffusion(*spectrum, options.adf).array().log();
   features.log_hks = log_heat_kernel_signature(*spectrum, options.hks);
   features.wks = wave_kernel_signature(*spectrum, options.wks);
+  features.chirality = chirality_fields(mesh, *spectrum);
   features.spectrum = std::move(*spectrum);
   auto tips = canonical_tips(mesh, features.log_adf, options.tip_persistence);
   if (!tips) return tl::unexpected(tips.error());

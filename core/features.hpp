@@ -36,6 +36,7 @@ struct ShapeFeatures {
   Eigen::VectorXd log_adf;        ///< #V, natural logarithm of Eq. (1)
   Eigen::MatrixXd log_hks;        ///< #V x times
   Eigen::MatrixXd wks;            ///< #V x energies
+  Eigen::MatrixXd chirality;      ///< #V x 3, see chirality_fields
   std::vector<Tip> tips;          ///< by falling persistence
   Eigen::MatrixXd tip_distances;  ///< #V x tips, geodesic, divided by sqrt(area)
 };

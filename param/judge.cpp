@@ -124,6 +124,9 @@ Result<Judgement> judge(const Shape& source,
   return judgement;
 }
 
+/// Where both sides of a body fit alike this decides; elsewhere it is small beside the distortion.
+constexpr double kChiralityWeight = 0.15;
+
 Result<Verdict> play_finals(const Shape& source,
                             const Shape& target,
                             Judgement judgement,
@@ -133,7 +136,8 @@ Result<Verdict> play_finals(const Shape& source,
   std::vector<double> energy(count, kInfinity);
   std::vector<Status> started(count);
   const auto judge_by = [&](size_t i, double mean_energy) {
-    energy[i] = std::log(mean_energy) + maps[i]->coarse_distortion();
+    energy[i] = std::log(mean_energy) + maps[i]->coarse_distortion() -
+                kChiralityWeight * maps[i]->coarse_chirality();
   };
   tbb::parallel_for(size_t{0}, count, [&](size_t i) {
     const Final& final = judgement.finals[i];

@@ -12,7 +12,8 @@ struct Candidate {
   std::vector<Landmark> landmarks;
   double distortion = 0;  ///< disc_distortion of the best chain; infinite if none could be cut
   /// What is left when the coarse map is optimised: the logarithm of its energy plus its
-  /// SphereMap::coarse_distortion. Infinite without a map; see play_finals.
+  /// SphereMap::coarse_distortion, less a share of its SphereMap::coarse_chirality. Infinite
+  /// without a map; see play_finals.
   double energy = 0;
 };
 
@@ -65,8 +66,9 @@ struct Verdict {
 };
 
 /// Optimises the coarse maps of the finalists and ranks them by what is left of the energy: the
-/// unoptimised map tells what is wrong by far, the optimised one what is better. All are optimised
-/// roughly first, and only the best of them to the end.
+/// unoptimised map tells what is wrong by far, the optimised one what is better. A body whose two
+/// sides are alike has a mirrored map that costs as little; the chirality fields tell them apart.
+/// All are optimised roughly first, and only the best of them to the end.
 /// kNoCorrespondence if none can be optimised. Shapes must outlive the verdict.
 Result<Verdict> play_finals(const Shape& source,
                             const Shape& target,

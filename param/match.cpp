@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "core/cut_handles.hpp"
 #include "core/fill_holes.hpp"
 
 namespace crosspatch {
@@ -80,6 +81,7 @@ Result<MatchedMap> match_closed(const TriangleMesh& source,
     if (options.progress) options.progress(name);
   };
   std::vector<Candidate> candidates{{given}};
+  std::array<Eigen::MatrixXd, 2> chirality;
   if (static_cast<int>(given.size()) < options.enough_landmarks) {
     stage("features");
     const auto features = both<ShapeFeatures>([&](int i) {
@@ -92,6 +94,7 @@ Result<MatchedMap> match_closed(const TriangleMesh& source,
       });
     });
     if (!features) return tl::unexpected(features.error());
+    chirality = {features->first.chirality, features->second.chirality};
     candidates = make_candidates(features->first, features->second, given, options.proposal);
     if (candidates.empty())
       return fail(ErrorCode::kNoCorrespondence,
@@ -108,6 +111,8 @@ Result<MatchedMap> match_closed(const TriangleMesh& source,
         options.shape);
   });
   if (!shapes) return tl::unexpected(shapes.error());
+  shapes->first.chirality = std::move(chirality[0]);
+  shapes->second.chirality = std::move(chirality[1]);
   stage("judging");
   auto judgement = judge(shapes->first, shapes->second, std::move(candidates), options.judge);
   if (!judgement) return tl::unexpected(judgement.error());
@@ -129,6 +134,7 @@ Result<MatchedMap> match_closed(const TriangleMesh& source,
   }
   if (!result) return tl::unexpected(result.error());
   if (winner > 0) matched.margin = 0;
+  matched.valid = validate(result->map, source, target);
   matched.result = std::move(*result);
   if (options.alternatives > 0) stage("others");
   for (const size_t i : differing.empty() ? std::vector<size_t>{} : differing[winner]) {
@@ -142,35 +148,57 @@ Result<MatchedMap> match_closed(const TriangleMesh& source,
   return matched;
 }
 
+/// A surface made closed and free of handles.
+struct Sphere {
+  CutMesh cut;
+  FilledMesh filled;
+
+  [[nodiscard]] bool was_changed() const { return filled.was_open(); }
+};
+
+Result<Sphere> make_sphere(const TriangleMesh& mesh) {
+  auto cut = cut_handles(mesh);
+  if (!cut) return tl::unexpected(cut.error());
+  auto filled = fill_holes(cut->mesh);
+  if (!filled) return tl::unexpected(filled.error());
+  return Sphere{std::move(*cut), std::move(*filled)};
+}
+
 }  // namespace
 
 Result<MatchedMap> match_and_map(const TriangleMesh& source,
                                  const TriangleMesh& target,
                                  const std::vector<Landmark>& given,
                                  const MatchOptions& options) {
-  const auto filled_source = fill_holes(source), filled_target = fill_holes(target);
-  if (!filled_source) return tl::unexpected(filled_source.error());
-  if (!filled_target) return tl::unexpected(filled_target.error());
-  auto matched = match_closed(
-      normalized(filled_source->mesh), normalized(filled_target->mesh), given, options);
-  if (!matched || !(filled_source->was_open() || filled_target->was_open())) return matched;
+  const auto spheres = both<Sphere>([&](int i) { return make_sphere(i == 0 ? source : target); });
+  if (!spheres) return tl::unexpected(spheres.error());
+  const auto& [a, b] = *spheres;
+  auto matched = match_closed(normalized(a.filled.mesh), normalized(b.filled.mesh), given, options);
+  if (!matched || !(a.was_changed() || b.was_changed())) return matched;
   const auto open = [&](MapResult& result) {
-    result.map = without_caps(result.map, *filled_source, *filled_target);
-    result.quality = measure_map(result.map, source, target);
+    result.map = without_caps(result.map, a.filled, b.filled);
+    result.quality = measure_map(result.map, a.cut.mesh, b.cut.mesh);
   };
-  const auto drop_caps = [&](std::vector<Landmark>& landmarks) {
+  // Caps are no part of the surfaces; copies of vertices along cuts are known by the first of them.
+  const auto on_surfaces = [&](std::vector<Landmark>& landmarks) {
     std::erase_if(landmarks, [&](const Landmark& l) {
-      return l.source_vertex >= filled_source->vertex_count ||
-             l.target_vertex >= filled_target->vertex_count;
+      return l.source_vertex >= a.filled.vertex_count || l.target_vertex >= b.filled.vertex_count;
     });
+    for (Landmark& l : landmarks) {
+      l.source_vertex = a.cut.vertex[static_cast<size_t>(l.source_vertex)];
+      l.target_vertex = b.cut.vertex[static_cast<size_t>(l.target_vertex)];
+    }
   };
-  matched->holes = {filled_source->holes, filled_target->holes};
+  matched->handles = {static_cast<int>(a.cut.loops.size()), static_cast<int>(b.cut.loops.size())};
+  matched->holes = {a.filled.holes - 2 * matched->handles[0],
+                    b.filled.holes - 2 * matched->handles[1]};
   open(matched->result);
+  matched->valid = validate_partial(matched->result.map, a.cut.mesh, b.cut.mesh);
   for (Alternative& other : matched->alternatives) {
     open(other.result);
-    drop_caps(other.landmarks);
+    on_surfaces(other.landmarks);
   }
-  for (Candidate& candidate : matched->ranking) drop_caps(candidate.landmarks);
+  for (Candidate& candidate : matched->ranking) on_surfaces(candidate.landmarks);
   return matched;
 }
 

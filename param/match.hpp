@@ -42,14 +42,24 @@ struct MatchedMap {
   /// kSameMap from the winner and from those before it.
   std::vector<Alternative> alternatives;
   /// Boundary loops of the source and of the target, which were closed for the map and opened
-  /// again: with any, the map is one of parts.
+  /// again.
   std::array<int, 2> holes{0, 0};
+  /// Handles of the source and of the target, which were cut through for the map; along the cuts
+  /// it is not continuous.
+  std::array<int, 2> handles{0, 0};
+  /// Whether the map is a bijection, of the surfaces or, with holes or handles, of the parts that
+  /// it covers once these are cut; the error says what is wrong.
+  Status valid;
+
+  [[nodiscard]] bool is_partial() const {
+    return holes[0] + holes[1] + handles[0] + handles[1] > 0;
+  }
 };
 
-/// Finds the map of two surfaces of genus 0: closes their boundary loops, proposes assignments of
-/// their tips, judges them by their bijective maps and optimises the winner. `given` landmarks are
-/// exact in the result; found ones are released in the end. kNoCorrespondence: another topology, or
-/// no candidate has a map. Other errors are those of the stages.
+/// Finds the map of two surfaces: cuts their handles, closes their boundary loops, proposes
+/// assignments of their tips, judges them by their bijective maps and optimises the winner. `given`
+/// landmarks are exact in the result; found ones are released in the end. kNoCorrespondence: no
+/// candidate has a map. Other errors are those of the stages.
 Result<MatchedMap> match_and_map(const TriangleMesh& source,
                                  const TriangleMesh& target,
                                  const std::vector<Landmark>& given,

@@ -29,7 +29,8 @@ Result<Shape> make_shape(TriangleMesh mesh,
                std::move(*progressive),
                std::move(*coarse),
                std::move(*X),
-               std::move(*curvature)};
+               std::move(*curvature),
+               {}};
 }
 
 }  // namespace crosspatch

@@ -14,6 +14,7 @@ struct Shape {
   MeshLevel coarse;  ///< the level on which candidate maps are judged; holds every landmark
   MatrixX3d X;       ///< #V x 3, its embedding in the unit sphere
   Eigen::MatrixXd curvature;  ///< #V x fields, see curvature_fields
+  Eigen::MatrixXd chirality;  ///< #V x fields, see chirality_fields; empty where nobody asked
 };
 
 struct ShapeOptions {

@@ -118,6 +118,31 @@ double SphereMap::coarse_distortion() const {
   return (there + back) / 2;
 }
 
+double SphereMap::coarse_chirality() const {
+  const Eigen::MatrixXd &a = source_.chirality, &b = target_.chirality;
+  if (a.cols() == 0 || b.cols() != a.cols()) return 0;
+  const MeshLevel& coarse = source_.coarse;
+  const Eigen::VectorXd areas = face_areas(coarse.mesh);
+  Eigen::ArrayXd product = Eigen::ArrayXd::Zero(a.cols()), own = product, other = product;
+  int face = 0;
+  for (int i = 0; i < coarse.mesh.vertex_count(); ++i) {
+    const int v = coarse.vertex[at(i)];
+    if (level_.faces(v).empty()) continue;
+    double area = 0;
+    for_each_outgoing(coarse.mesh, i, [&](int h) { area += areas[h / 3]; });
+    const SurfacePoint p = lift_.surface_point(X_.row(v).transpose(), face);
+    const Eigen::ArrayXd x = a.row(v).transpose().array();
+    Eigen::ArrayXd y = Eigen::ArrayXd::Zero(a.cols());
+    for (int k = 0; k < 3; ++k)
+      y += p.bary[k] * b.row(target_.mesh.F(p.face, k)).transpose().array();
+    product += area * x * y;
+    own += area * x.square();
+    other += area * y.square();
+  }
+  const Eigen::ArrayXd size = (own * other).sqrt();
+  return (size > 0).select(product / size.max(1e-300), 0.0).mean();
+}
+
 double SphereMap::coarse_distance(const SphereMap& other) const {
   double sum = 0;
   int count = 0, face = 0;

@@ -41,6 +41,9 @@ class SphereMap {
   /// inverse is looked at at the target's coarse vertices, because a protrusion that one face
   /// swallows is not seen from its corners.
   [[nodiscard]] double coarse_distortion() const;
+  /// How well the chirality fields of both surfaces agree through the coarse map: their correlation
+  /// over the coarse vertices, the mean over the fields, in [-1, 1]; 0 without fields.
+  [[nodiscard]] double coarse_chirality() const;
   /// Mean distance on the surface, measured straight through space, between the images of the
   /// coarse vertices under this coarse map and another one of the same two surfaces.
   [[nodiscard]] double coarse_distance(const SphereMap& other) const;

@@ -233,14 +233,22 @@ Status refine_on_sphere(Refinement& refinement,
                         MatrixX3d& X,
                         std::vector<int>& hint) {
   Placer placer(refinement, V, lift, options.optimizer.distortion, X, hint);
-  // Where a kernel is too thin for doubles its surroundings make room.
+  const auto optimise = [&] {
+    optimize_on_sphere(make_sphere_problem(refinement.compact_faces(), V, options.pinned),
+                       lift,
+                       options.optimizer,
+                       X,
+                       hint);
+  };
+  // Where a kernel is too thin for doubles its surroundings make room, at last the whole level.
   const auto split = [&] {
-    constexpr int kTries = 4;
+    constexpr int kTries = 8, kLocal = 4;
     int v = refinement.split();
     for (int i = 0; i < kTries; ++i) {
       const int kept = refinement.last_kept();
       if (placer.place(v, kept)) return true;
       refinement.collapse(v, kept);
+      if (i == kLocal) optimise();
       make_room(refinement, V, kept, options.pinned, X);
       v = refinement.split();
     }
@@ -257,11 +265,7 @@ Status refine_on_sphere(Refinement& refinement,
     const bool last = refinement.done() || n >= options.until_vertices;
     if (!last && n < options.growth * optimised_at) continue;
     optimised_at = n;
-    optimize_on_sphere(make_sphere_problem(refinement.compact_faces(), V, options.pinned),
-                       lift,
-                       options.optimizer,
-                       X,
-                       hint);
+    optimise();
   }
   return {};
 }

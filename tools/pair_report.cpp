@@ -11,28 +11,46 @@ constexpr double kCoverageGate = 1 - 1e-9;  // rounding of summed areas
 /// What a map of surfaces with holes has to cover of both: they need not be the same holes.
 constexpr double kPartialCoverageGate = 0.9;
 
-bool is_partial(const MatchedMap& matched) {
-  return matched.holes[0] + matched.holes[1] > 0;
-}
-
 /// What makes a finished run end with kGateFailed, a sentence each.
 std::vector<std::string> gate_failures(const PairRun& run) {
   const MapQuality& quality = run.matched.result.quality;
   std::vector<std::string> warnings;
   if (quality.flipped > 0)
     warnings.push_back(fmt::format("{} pieces of the map are turned over", quality.flipped));
-  const bool partial = is_partial(run.matched);
+  const bool partial = run.matched.is_partial();
   const double gate = partial ? kPartialCoverageGate : kCoverageGate;
   if (quality.source_coverage < gate || quality.target_coverage < gate)
     warnings.push_back(
         fmt::format("the map covers {:.2f} % of the source and {:.2f} % of the target",
                     100 * quality.source_coverage,
                     100 * quality.target_coverage));
-  const TriangleMesh &source = run.source.prepared.mesh, &target = run.target.prepared.mesh;
-  const Status bijective = partial ? validate_partial(run.matched.result.map, source, target)
-                                   : validate(run.matched.result.map, source, target);
-  if (!bijective) warnings.push_back("the map is not one-to-one: " + bijective.error().message);
+  if (!run.matched.valid)
+    warnings.push_back("the map is not one-to-one: " + run.matched.valid.error().message);
   return warnings;
+}
+
+/// "1 hole and 2 handles"
+std::string openings(int holes, int handles) {
+  const auto counted = [](int n, const char* thing) {
+    return fmt::format("{} {}{}", n, thing, n == 1 ? "" : "s");
+  };
+  if (handles == 0 && holes == 0) return "nothing";
+  if (handles == 0) return counted(holes, "hole");
+  if (holes == 0) return counted(handles, "handle");
+  return counted(holes, "hole") + " and " + counted(handles, "handle");
+}
+
+std::string partial_warning(const MatchedMap& matched) {
+  const auto [holes, handles] =
+      std::pair(matched.holes[0] + matched.holes[1], matched.handles[0] + matched.handles[1]);
+  return fmt::format(
+      "{} of the source and {} of the target were {} for the map, which is one of parts: "
+      "{:.2f} % of the source and {:.2f} % of the target are mapped",
+      openings(matched.holes[0], matched.handles[0]),
+      openings(matched.holes[1], matched.handles[1]),
+      handles == 0 ? "closed" : (holes == 0 ? "cut" : "closed or cut"),
+      100 * matched.result.quality.source_coverage,
+      100 * matched.result.quality.target_coverage);
 }
 
 std::map<std::string, double> map_figures(const MatchedMap& matched) {
@@ -75,15 +93,7 @@ RunReport pair_report(const PairArguments& arguments, const PairRun& run) {
   report.warnings = gate_failures(run);
   report.exit_code =
       static_cast<int>(report.warnings.empty() ? ExitCode::kDone : ExitCode::kGateFailed);
-  if (is_partial(run.matched))
-    report.warnings.push_back(
-        fmt::format("{} holes of the source and {} of the target were closed for the map and are "
-                    "no part of it: "
-                    "{:.2f} % of the source and {:.2f} % of the target are mapped",
-                    run.matched.holes[0],
-                    run.matched.holes[1],
-                    100 * run.matched.result.quality.source_coverage,
-                    100 * run.matched.result.quality.target_coverage));
+  if (run.matched.is_partial()) report.warnings.push_back(partial_warning(run.matched));
   if (!run.matched.ranking.empty() && run.matched.margin < kSafeMargin)
     report.warnings.push_back(fmt::format(
         "the choice among the candidate maps is unsure, left and right may be exchanged: "

@@ -60,8 +60,12 @@ Result<MatchedMap> read_map(const std::string& path, const PairRun& run, Progres
         matched.margin = std::numeric_limits<double>::infinity();
         matched.result.quality = measure_map(map, source.mesh, target.mesh);
         matched.result.map = std::move(map);
+        matched.handles = {genus(source.mesh), genus(target.mesh)};
         matched.holes = {static_cast<int>(boundary_loops(source.mesh).size()),
                          static_cast<int>(boundary_loops(target.mesh).size())};
+        matched.valid = matched.is_partial()
+                            ? validate_partial(matched.result.map, source.mesh, target.mesh)
+                            : validate(matched.result.map, source.mesh, target.mesh);
         return matched;
       })
       .map_error([&](const Error& error) { return with_path(path, error); });

@@ -1,0 +1,220 @@
+#include "core/cut_handles.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <queue>
+#include <set>
+#include <tuple>
+
+#include "core/fill_holes.hpp"
+#include "core/index.hpp"
+
+namespace crosspatch {
+namespace {
+
+constexpr double kFar = std::numeric_limits<double>::infinity();
+
+struct Loop {
+  std::vector<int> vertices;
+  double length = kFar;
+};
+
+class UnionFind {
+ public:
+  explicit UnionFind(int count) : root_(idx(count)) { std::iota(root_.begin(), root_.end(), 0); }
+  int find(int i) {
+    while (root_[idx(i)] != i) i = root_[idx(i)] = root_[idx(root_[idx(i)])];
+    return i;
+  }
+  /// Whether the two were apart.
+  bool join(int i, int j) {
+    const int a = find(i), b = find(j);
+    root_[idx(std::max(a, b))] = std::min(a, b);
+    return a != b;
+  }
+
+ private:
+  std::vector<int> root_;
+};
+
+/// Shortest paths along edges from `base`, through vertices below `vertex_count` only.
+struct PathTree {
+  std::vector<double> distance;
+  std::vector<int> parent;  ///< half-edge that leads to the vertex, -1 at the base
+};
+
+double length(const TriangleMesh& mesh, int h) {
+  return (mesh.position(mesh.to(h)) - mesh.position(mesh.from(h))).norm();
+}
+
+PathTree path_tree(const TriangleMesh& mesh, int base, int vertex_count) {
+  PathTree tree{std::vector<double>(idx(mesh.vertex_count()), kFar),
+                std::vector<int>(idx(mesh.vertex_count()), -1)};
+  using Entry = std::pair<double, int>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  tree.distance[idx(base)] = 0;
+  queue.emplace(0, base);
+  while (!queue.empty()) {
+    const auto [d, v] = queue.top();
+    queue.pop();
+    if (d > tree.distance[idx(v)]) continue;
+    for_each_outgoing(mesh, v, [&](int h) {
+      const int w = mesh.to(h);
+      const double there = d + length(mesh, h);
+      if (w >= vertex_count || there >= tree.distance[idx(w)]) return;
+      tree.distance[idx(w)] = there;
+      tree.parent[idx(w)] = h;
+      queue.emplace(there, w);
+    });
+  }
+  return tree;
+}
+
+std::vector<int> path_to_base(const TriangleMesh& mesh, const PathTree& tree, int v) {
+  std::vector<int> path{v};
+  while (tree.parent[idx(v)] >= 0) {
+    v = mesh.from(tree.parent[idx(v)]);
+    path.push_back(v);
+  }
+  return path;
+}
+
+/// The closed path of edge h and the tree's paths from its ends up to where they meet.
+Loop loop_through(const TriangleMesh& mesh, const PathTree& tree, int h) {
+  std::vector<int> a = path_to_base(mesh, tree, mesh.from(h));
+  std::vector<int> b = path_to_base(mesh, tree, mesh.to(h));
+  while (a.size() > 1 && b.size() > 1 && a[a.size() - 2] == b[b.size() - 2]) {
+    a.pop_back();
+    b.pop_back();
+  }
+  Loop loop;
+  loop.length = tree.distance[idx(mesh.from(h))] + tree.distance[idx(mesh.to(h))] +
+                length(mesh, h) - 2 * tree.distance[idx(a.back())];
+  loop.vertices = a;
+  loop.vertices.insert(loop.vertices.end(), b.rbegin() + 1, b.rend());
+  return loop;
+}
+
+/// The shortest of the loops that a tree of shortest paths from `base` and the longest tree across
+/// the other edges leave over: as many as twice the genus, none of which separates the surface.
+Loop shortest_loop_near(const TriangleMesh& mesh, int base, int vertex_count) {
+  const PathTree tree = path_tree(mesh, base, vertex_count);
+  std::vector<bool> in_tree(idx(mesh.halfedge_count()), false);
+  for (const int h : tree.parent)
+    if (h >= 0) in_tree[idx(h)] = in_tree[idx(mesh.twin[idx(h)])] = true;
+  std::vector<std::pair<double, int>> edges;
+  for (int h = 0; h < mesh.halfedge_count(); ++h)
+    if (h < mesh.twin[idx(h)] && !in_tree[idx(h)])
+      edges.emplace_back(
+          tree.distance[idx(mesh.from(h))] + tree.distance[idx(mesh.to(h))] + length(mesh, h), h);
+  std::sort(edges.begin(), edges.end(), std::greater<>());
+  UnionFind faces(mesh.face_count());
+  Loop best;
+  for (const auto& [weight, h] : edges) {
+    if (faces.join(face_of(h), face_of(mesh.twin[idx(h)]))) continue;
+    Loop loop = loop_through(mesh, tree, h);
+    if (loop.length < best.length) best = std::move(loop);
+  }
+  return best;
+}
+
+/// About the shortest loop that does not separate the closed surface, through vertices below
+/// `vertex_count`.
+Loop shortest_loop(const TriangleMesh& mesh, int vertex_count) {
+  constexpr int kBases = 48;  // the shortest loop passes near one of them
+  Loop best;
+  int base = 0;
+  std::vector<double> nearest(idx(vertex_count), kFar);
+  const auto try_base = [&](int v) {
+    Loop loop = shortest_loop_near(mesh, v, vertex_count);
+    if (loop.length < best.length) best = std::move(loop);
+  };
+  for (int i = 0; i < kBases; ++i) {
+    try_base(base);
+    // The next base is the vertex farthest from all before, as the crow flies.
+    for (int v = 0; v < vertex_count; ++v)
+      nearest[idx(v)] =
+          std::min(nearest[idx(v)], (mesh.position(v) - mesh.position(base)).squaredNorm());
+    base = static_cast<int>(std::max_element(nearest.begin(), nearest.end()) - nearest.begin());
+  }
+  // A base on a loop finds the shortest loop through it.
+  constexpr std::size_t kAlong = 8;
+  for (int round = 0; round < 2; ++round) {
+    const std::vector<int> found = best.vertices;
+    for (std::size_t i = 0; i < found.size(); i += std::max<std::size_t>(1, found.size() / kAlong))
+      try_base(found[i]);
+  }
+  return best;
+}
+
+/// Gives both sides of the marked half-edges vertices of their own. Corners that meet across other
+/// edges stay one vertex; the first of them keeps the number.
+Result<CutMesh> open_along(const CutMesh& cut, const std::vector<bool>& marked) {
+  const TriangleMesh& mesh = cut.mesh;
+  UnionFind corners(mesh.halfedge_count());
+  for (int h = 0; h < mesh.halfedge_count(); ++h) {
+    const int twin = mesh.twin[idx(h)];
+    if (twin < 0 || marked[idx(h)]) continue;
+    corners.join(h, next(twin));
+    corners.join(next(h), twin);
+  }
+  CutMesh opened{{}, cut.vertex, cut.loops};
+  std::vector<int> vertex_of(idx(mesh.halfedge_count()), -1);
+  std::vector<bool> taken(idx(mesh.vertex_count()), false);
+  MatrixX3i F = mesh.F;
+  std::vector<int> copies;
+  for (int c = 0; c < mesh.halfedge_count(); ++c) {
+    int& v = vertex_of[idx(corners.find(c))];
+    const int old = mesh.from(c);
+    if (v < 0 && !taken[idx(old)]) {
+      taken[idx(old)] = true;
+      v = old;
+    } else if (v < 0) {
+      v = mesh.vertex_count() + static_cast<int>(copies.size());
+      copies.push_back(old);
+      opened.vertex.push_back(cut.vertex[idx(old)]);
+    }
+    F(c / 3, c % 3) = v;
+  }
+  MatrixX3d V(mesh.vertex_count() + static_cast<Eigen::Index>(copies.size()), 3);
+  V.topRows(mesh.vertex_count()) = mesh.V;
+  for (std::size_t i = 0; i < copies.size(); ++i)
+    V.row(mesh.vertex_count() + static_cast<Eigen::Index>(i)) = mesh.V.row(copies[i]);
+  auto made = make_mesh(std::move(V), std::move(F));
+  if (!made) return tl::unexpected(made.error());
+  opened.mesh = std::move(*made);
+  return opened;
+}
+
+}  // namespace
+
+Result<CutMesh> cut_handles(const TriangleMesh& mesh) {
+  CutMesh cut{mesh, std::vector<int>(idx(mesh.vertex_count())), {}};
+  std::iota(cut.vertex.begin(), cut.vertex.end(), 0);
+  while (genus(cut.mesh) > 0) {
+    const auto closed = fill_holes(cut.mesh);
+    if (!closed) return tl::unexpected(closed.error());
+    const Loop loop = shortest_loop(closed->mesh, closed->vertex_count);
+    if (loop.vertices.size() < 3)
+      return fail(ErrorCode::kInternal, "cut: a surface with handles has no loop");
+    std::vector<bool> marked(idx(cut.mesh.halfedge_count()), false);
+    std::vector<int> original;
+    for (std::size_t i = 0; i < loop.vertices.size(); ++i) {
+      const int u = loop.vertices[i], v = loop.vertices[(i + 1) % loop.vertices.size()];
+      for (const int h : {find_halfedge(cut.mesh, u, v), find_halfedge(cut.mesh, v, u)})
+        if (h >= 0) marked[idx(h)] = true;
+      original.push_back(cut.vertex[idx(u)]);
+    }
+    const int before = genus(cut.mesh);
+    auto opened = open_along(cut, marked);
+    if (!opened) return opened;
+    if (genus(opened->mesh) >= before)
+      return fail(ErrorCode::kInternal, "cut: a loop left as many handles as before");
+    opened->loops.push_back(std::move(original));
+    cut = std::move(*opened);
+  }
+  return cut;
+}
+
+}  // namespace crosspatch
