@@ -249,8 +249,9 @@ CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
       ->add_option("--texture",
                    arguments.pair.files.texture,
                    "What the source wears: a PNG or JPEG over its texture coordinates, a painted "
-                   "'checker' or 'uv' (over them too), or colours by 'position' [its own]")
-      ->type_name("FILE|checker|uv|position");
+                   "'checker' or 'uv' (over them too), or colours by 'position' or by the map's "
+                   "'distortion' [its own]")
+      ->type_name("FILE|checker|uv|position|distortion");
   add_pair(*command, arguments.pair);
   command->footer(
       "\nExamples:\n"
@@ -306,7 +307,7 @@ void add_render(CLI::App& app, RenderArguments& arguments) {
       *command,
       "--texture",
       "own: the file's colours and textures; position: coloured by place; checker: the same with a "
-      "checker [own for one mesh, position for two]",
+      "checker [own, with --map position]",
       "own|position|checker",
       [&arguments](const std::string& text) -> std::string {
         DrawnColors colors{};

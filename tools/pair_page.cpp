@@ -16,6 +16,7 @@
 #include "param/map_quality.hpp"
 #include "tools/base64.hpp"
 #include "tools/display_mesh.hpp"
+#include "tools/palette.hpp"
 #include "tools/verdicts.hpp"
 #include "tools/viewer.hpp"
 
@@ -63,11 +64,6 @@ double at(const Eigen::VectorXd& values, const TriangleMesh& mesh, const Surface
 
 std::uint8_t byte(double unit) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(unit, 0.0, 1.0) * 255));
-}
-
-/// The distortion's place on a scale: 0 at an isometry (4), 1 at 25 times its energy.
-double heat(double energy) {
-  return std::log(std::max(energy, 4.0) / 4) / std::log(25.0);
 }
 
 /// Everything about one of the two surfaces that is drawn on it.
@@ -215,7 +211,7 @@ class MeshWriter {
           for (std::size_t i = 0; i < 3; ++i)
             v.color[i] = byte(mesh.colors.empty() ? 1 : std::sqrt(double(mesh.colors[c][i])));
           v.adf = byte((at(adf, view_.mesh.prepared.mesh, p) - low) / range);
-          v.distortion = byte(heat(at(distortion, view_.mesh.prepared.mesh, p)));
+          v.distortion = byte(distortion_place(at(distortion, view_.mesh.prepared.mesh, p)));
           v.patch = patch[idx(t)];
           add(v);
         }

@@ -45,6 +45,10 @@ Color heat_color(double t) {
   return oklch(0.97 - 0.62 * t, 0.24 * std::sqrt(t), (75 - 50 * t) * kDegree);
 }
 
+double distortion_place(double energy) {
+  return std::log(std::max(energy, 4.0) / 4) / std::log(25.0);
+}
+
 Color category_color(int i) {
   // The golden angle never repeats a hue; three lightness levels tell close hues apart.
   constexpr double kGoldenAngle = std::numbers::pi * (3 - 2.2360679774997896);

@@ -16,6 +16,10 @@ Color field_color(double t);
 /// Perceptual map for distortion: white at 0, over orange, to dark red at 1 and beyond.
 Color heat_color(double t);
 
+/// The place of a symmetric Dirichlet energy on that scale: 0 at an isometry (4), 1 at 25 times as
+/// much, by logarithms.
+double distortion_place(double energy);
+
 /// The i-th of a sequence of colours of which neighbours in the sequence differ clearly.
 Color category_color(int i);
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "param/map_quality.hpp"
 #include "tools/overlay_text.hpp"
 #include "tools/source_texture.hpp"
 
@@ -146,6 +147,13 @@ Result<PairRun> run_pair(const PairFiles& files, Progress& progress) {
                                                  : read_map(files.map, run, progress);
   if (!matched) return tl::unexpected(matched.error());
   run.matched = std::move(*matched);
+  if (files.texture == "distortion")
+    color_by_distortion(
+        run.source.prepared.numbering,
+        vertex_distortion(
+            run.matched.result.map, run.source.prepared.mesh, run.target.prepared.mesh)
+            .source,
+        run.source.soup);
   progress.end(map_summary(run.matched));
   return run;
 }

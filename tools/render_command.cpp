@@ -173,9 +173,8 @@ Bitmap draw_side_by_side(const std::vector<Drawn>& drawn, const RenderArguments&
 
 /// Reads the meshes and dresses them as the arguments say.
 Result<std::vector<Drawn>> read_scenes(const RenderArguments& arguments) {
-  const bool pair = !arguments.mesh2.empty();
   const DrawnColors colors =
-      arguments.colors.value_or(pair ? DrawnColors::kPosition : DrawnColors::kOwn);
+      arguments.colors.value_or(arguments.map.empty() ? DrawnColors::kOwn : DrawnColors::kPosition);
   std::vector<Drawn> drawn;
   for (const std::string& path : {arguments.mesh, arguments.mesh2}) {
     if (path.empty()) continue;

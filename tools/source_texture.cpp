@@ -6,8 +6,10 @@
 
 #include "core/file_bytes.hpp"
 #include "core/image_header.hpp"
+#include "core/index.hpp"
 #include "tools/image_io.hpp"
 #include "tools/input.hpp"
+#include "tools/palette.hpp"
 
 namespace crosspatch {
 namespace {
@@ -77,14 +79,21 @@ void color_by_position(PolygonSoup& soup) {
 
 Status give_texture(const std::string& what, PolygonSoup& soup) {
   Material material;
-  material.name = what == "position" ? what : "texture";
-  if (what == "position") {
-    color_by_position(soup);
+  const bool by_vertex = what == "position" || what == "distortion";
+  material.name = by_vertex ? what : "texture";
+  if (by_vertex) {
+    if (what == "position")
+      color_by_position(soup);
+    else
+      soup.corner_colors.assign(soup.corner_vertex.size(), {1, 1, 1, 1});
     soup.images.clear();
   } else {
     if (soup.uv_sets.empty())
-      return fail(ErrorCode::kBadInput,
-                  fmt::format("--texture {}: the source has no texture coordinates", what));
+      return fail(
+          ErrorCode::kBadInput,
+          fmt::format("--texture {}: the source has no texture coordinates; 'position' needs "
+                      "none",
+                      what));
     auto image = texture_image(what);
     if (!image) return tl::unexpected(image.error());
     soup.images = {std::move(*image)};
@@ -94,6 +103,17 @@ Status give_texture(const std::string& what, PolygonSoup& soup) {
   soup.materials = {material};
   soup.polygon_material.assign(static_cast<std::size_t>(soup.polygon_count()), 0);
   return {};
+}
+
+void color_by_distortion(const FileNumbering& numbering,
+                         const Eigen::VectorXd& energy,
+                         PolygonSoup& soup) {
+  for (std::size_t c = 0; c < soup.corner_vertex.size(); ++c) {
+    const int v = numbering.mesh_vertex[idx(soup.corner_vertex[c])];
+    if (v < 0) continue;
+    const Color color = heat_color(distortion_place(energy[v]));
+    soup.corner_colors[c] = {color[0], color[1], color[2], 1};
+  }
 }
 
 }  // namespace crosspatch

@@ -50,7 +50,7 @@ class Assembly {
         }
         mesh_.triangles(static_cast<Eigen::Index>(t), static_cast<Eigen::Index>(k)) =
             row[idx(point)];
-        add_corner(overlay, triangle.target_face, w);
+        add_corner(overlay, triangle, w);
       }
     }
     mesh_.positions.resize(static_cast<Eigen::Index>(used.size()), 3);
@@ -68,7 +68,8 @@ class Assembly {
     return position(target_, p);
   }
 
-  void add_corner(const OverlayMesh& overlay, int face, int wedge) {
+  void add_corner(const OverlayMesh& overlay, const OverlayMesh::Triangle& triangle, int wedge) {
+    const int face = triangle.target_face;
     const SurfacePoint p =
         in_face(target_, overlay.points[idx(overlay.wedge_point[idx(wedge)])], face);
     const Vector3d normal = p.bary[0] * normals_[idx(3 * face)] +
@@ -80,6 +81,10 @@ class Assembly {
     for (int s = 0; s < attributes_.uv_sets; ++s)
       mesh_.uv_sets[idx(s)].emplace_back(value[idx(2 * s)], value[idx(2 * s + 1)]);
     if (!attributes_.colors) return;
+    if (!triangle.mapped) {
+      mesh_.colors.push_back({1, 1, 1, 1});  // the material's grey shows
+      return;
+    }
     const double* rgba = value + idx(2 * attributes_.uv_sets);
     mesh_.colors.push_back({static_cast<float>(rgba[0]),
                             static_cast<float>(rgba[1]),

@@ -68,11 +68,30 @@ TEST(SourceTexture, ColoursByPlace) {
             (std::array<float, 4>{1, 0.5F, 0, 1}));  // one scale for all axes
 }
 
+TEST(SourceTexture, ColoursByDistortion) {
+  PolygonSoup soup = quad();
+  ASSERT_TRUE(give_texture("distortion", soup));
+  FileNumbering numbering;
+  numbering.mesh_vertex = {2, 1, 0, -1};  // the last was left out
+  const Eigen::Vector3d energy(100, 40, 4);
+  color_by_distortion(numbering, energy, soup);
+  EXPECT_TRUE(validate(soup));
+  const auto green = [&](int vertex) {
+    for (std::size_t c = 0; c < soup.corner_vertex.size(); ++c)
+      if (soup.corner_vertex[c] == vertex) return soup.corner_colors[c][1];
+    return -1.0F;
+  };
+  EXPECT_EQ(green(3), 1);
+  EXPECT_GT(green(0), 0.8);
+  EXPECT_LT(green(1), green(0));
+  EXPECT_LT(green(2), green(1));
+}
+
 TEST(SourceTexture, SaysWhatIsMissing) {
   PolygonSoup bare = quad();
   bare.uv_sets.clear();
   EXPECT_EQ(give_texture("checker", bare).error().message,
-            "--texture checker: the source has no texture coordinates");
+            "--texture checker: the source has no texture coordinates; 'position' needs none");
   PolygonSoup soup = quad();
   EXPECT_EQ(give_texture("no such file.png", soup).error().code, ErrorCode::kBadInput);
 }

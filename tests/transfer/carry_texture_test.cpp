@@ -231,7 +231,8 @@ INSTANTIATE_TEST_SUITE_P(SourceAndTargetCells,
                          testing::Values(std::pair(8, 3), std::pair(5, 9), std::pair(12, 12)));
 
 TEST(CarryTexture, UnfilledFaceBecomesUnmappedWithoutGaps) {
-  const Surface source = two_islands(6, 3, 256);
+  Surface source = two_islands(6, 3, 256);
+  source.soup.corner_colors.assign(idx(source.soup.corner_count()), {0.2F, 0.3F, 0.4F, 1});
   const Surface target = shapes::surface_of(shapes::jittered_grid(shapes::grid(4), 4, 4));
   SurfaceMap map = shapes::planar_overlay(source.prepared.mesh, target.prepared.mesh);
   // Take away one polygon: its target face is only partly filled.
@@ -259,9 +260,12 @@ TEST(CarryTexture, UnfilledFaceBecomesUnmappedWithoutGaps) {
   const double lost = face_areas(target.prepared.mesh)[face];
   EXPECT_NEAR(carried->statistics.coverage, 1 - lost, 1e-9);  // of area 1
   EXPECT_NEAR(area_of(carried->mesh), 1, 1e-9);
-  for (int t = 0; t < carried->mesh.triangle_count(); ++t)
+  for (int t = 0; t < carried->mesh.triangle_count(); ++t) {
+    const bool unmapped = carried->mesh.target_face[idx(t)] == face;
     EXPECT_EQ(carried->mesh.materials[idx(carried->mesh.material[idx(t)])].name == "unmapped",
-              carried->mesh.target_face[idx(t)] == face);
+              unmapped);
+    EXPECT_FLOAT_EQ(carried->mesh.colors[idx(3 * t)][0], unmapped ? 1 : 0.2F);
+  }
   EXPECT_EQ(shapes::loose_sides(carried->mesh), shapes::loose_sides(whole->mesh));
 }
 
