@@ -14,12 +14,14 @@ program=build/release/crosspatch
 out=build/demo
 mkdir -p "$out"
 name="$(basename "${source_mesh%.*}")_on_$(basename "${target_mesh%.*}")"
-"$program" transfer "$source_mesh" "$target_mesh" --output "$out/$name.glb" --json "$out/$name.json"
+"$program" transfer "$source_mesh" "$target_mesh" --output "$out/$name.glb" \
+  --json "$out/$name.json" --report "$out/$name.html"
 "$program" render "$out/$name.glb" --output "$out/$name.png" --quiet
 
 echo
 echo "textured mesh: $PWD/$out/$name.glb"
 echo "picture:       $PWD/$out/$name.png"
+echo "page:          $PWD/$out/$name.html"
 echo "report:        $PWD/$out/$name.json"
 
 jq -r --arg name "$name" '

@@ -284,8 +284,8 @@ CLI::App* add_doctor(CLI::App& app, DoctorArguments& arguments) {
 }
 
 void add_render(CLI::App& app, RenderArguments& arguments) {
-  CLI::App* command =
-      app.add_subcommand("render", "Draw one mesh, or two with corresponding colours, as a PNG");
+  CLI::App* command = app.add_subcommand(
+      "render", "Draw one mesh or two as a PNG, with a map in corresponding colours");
   command->add_option("MESH", arguments.mesh, "Mesh to draw")->required();
   command->add_option("MESH2", arguments.mesh2, "Mesh to draw below it");
   command->add_option("-o,--output", arguments.output, "Picture to write")
