@@ -120,9 +120,9 @@ Loop shortest_loop_near(const TriangleMesh& mesh, int base, int vertex_count) {
 }
 
 /// About the shortest loop that does not separate the closed surface, through vertices below
-/// `vertex_count`.
+/// `vertex_count`. With many handles one is near any base, so that fewer bases do.
 Loop shortest_loop(const TriangleMesh& mesh, int vertex_count) {
-  constexpr int kBases = 48;  // the shortest loop passes near one of them
+  const int bases = std::clamp(96 / genus(mesh), 6, 48);
   Loop best;
   int base = 0;
   std::vector<double> nearest(idx(vertex_count), kFar);
@@ -130,7 +130,7 @@ Loop shortest_loop(const TriangleMesh& mesh, int vertex_count) {
     Loop loop = shortest_loop_near(mesh, v, vertex_count);
     if (loop.length < best.length) best = std::move(loop);
   };
-  for (int i = 0; i < kBases; ++i) {
+  for (int i = 0; i < bases; ++i) {
     try_base(base);
     // The next base is the vertex farthest from all before, as the crow flies.
     for (int v = 0; v < vertex_count; ++v)

@@ -190,8 +190,9 @@ Result<MatchedMap> match_and_map(const TriangleMesh& source,
     }
   };
   matched->handles = {static_cast<int>(a.cut.loops.size()), static_cast<int>(b.cut.loops.size())};
-  matched->holes = {a.filled.holes - 2 * matched->handles[0],
-                    b.filled.holes - 2 * matched->handles[1]};
+  // Loops through the same vertex leave fewer holes to fill than two each.
+  matched->holes = {static_cast<int>(boundary_loops(source).size()),
+                    static_cast<int>(boundary_loops(target).size())};
   open(matched->result);
   matched->valid = validate_partial(matched->result.map, a.cut.mesh, b.cut.mesh);
   for (Alternative& other : matched->alternatives) {
