@@ -34,11 +34,12 @@ Eigen::VectorXd pseudo_scalar(const TriangleMesh& mesh,
 
 }  // namespace
 
-Eigen::MatrixXd chirality_fields(const TriangleMesh& mesh, const Spectrum& spectrum) {
+Result<Eigen::MatrixXd> chirality_fields(const TriangleMesh& mesh, const Spectrum& spectrum) {
   constexpr int kCoarse = 9, kFine = 39;  // eigenvalues that smoothing is matched to
-  const Eigen::VectorXd curvature = integrated_mean_curvature(mesh);
-  const Eigen::VectorXd coarse = smoothed(spectrum, curvature, kCoarse);
-  const Eigen::VectorXd fine = smoothed(spectrum, curvature, kFine);
+  const auto curvature = integrated_mean_curvature(mesh);
+  if (!curvature) return tl::unexpected(curvature.error());
+  const Eigen::VectorXd coarse = smoothed(spectrum, *curvature, kCoarse);
+  const Eigen::VectorXd fine = smoothed(spectrum, *curvature, kFine);
   const Eigen::MatrixXd wks =
       wave_kernel_signature(spectrum, {.energies = 12, .variance = 1.5}).array().log();
   const auto low = wks.col(1), middle = wks.col(4);

@@ -76,10 +76,9 @@ Result<Eigen::MatrixXd> curvature_fields(const TriangleMesh& mesh,
   return fields;
 }
 
-Eigen::VectorXd integrated_mean_curvature(const TriangleMesh& mesh) {
-  const auto laplacian = compute_laplacian(mesh);
-  return laplacian ? mean_curvatures(mesh, laplacian->L)
-                   : Eigen::VectorXd(Eigen::VectorXd::Zero(mesh.vertex_count()));
+Result<Eigen::VectorXd> integrated_mean_curvature(const TriangleMesh& mesh) {
+  return compute_laplacian(mesh).map(
+      [&](const Laplacian& laplacian) { return mean_curvatures(mesh, laplacian.L); });
 }
 
 }  // namespace crosspatch

@@ -22,8 +22,8 @@ struct CurvatureOptions {
 Result<Eigen::MatrixXd> curvature_fields(const TriangleMesh& mesh,
                                          const CurvatureOptions& options = {});
 
-/// Mean curvature integrated around each vertex (#V), twice, positive where convex. Zero where the
-/// Laplacian cannot be had.
-Eigen::VectorXd integrated_mean_curvature(const TriangleMesh& mesh);
+/// Mean curvature integrated around each vertex (#V), twice, positive where convex. Errors of
+/// compute_laplacian.
+Result<Eigen::VectorXd> integrated_mean_curvature(const TriangleMesh& mesh);
 
 }  // namespace crosspatch

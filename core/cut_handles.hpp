@@ -18,7 +18,7 @@ struct CutMesh {
 /// as possible, so that genus 0 is left; each cut leaves two boundary loops. Boundary loops that
 /// were there before stay as they are. Source: paths by tree and cotree of Erickson & Whittlesey
 /// 2005, "Greedy optimal homotopy and homology generators", from a sample of base points. Cost: a
-/// handle takes some 60 shortest path trees. Errors of make_mesh.
+/// handle takes at most 64 shortest path trees, fewer where there are many. Errors of make_mesh.
 Result<CutMesh> cut_handles(const TriangleMesh& mesh);
 
 }  // namespace crosspatch

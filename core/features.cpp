@@ -41,7 +41,9 @@ Result<ShapeFeatures> compute_features(const TriangleMesh& mesh, const FeatureOp
   features.log_adf = auto_diffusion(*spectrum, options.adf).array().log();
   features.log_hks = log_heat_kernel_signature(*spectrum, options.hks);
   features.wks = wave_kernel_signature(*spectrum, options.wks);
-  features.chirality = chirality_fields(mesh, *spectrum);
+  auto chirality = chirality_fields(mesh, *spectrum);
+  if (!chirality) return tl::unexpected(chirality.error());
+  features.chirality = std::move(*chirality);
   features.spectrum = std::move(*spectrum);
   auto tips = canonical_tips(mesh, features.log_adf, options.tip_persistence);
   if (!tips) return tl::unexpected(tips.error());

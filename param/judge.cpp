@@ -125,6 +125,8 @@ Result<Judgement> judge(const Shape& source,
 }
 
 /// Where both sides of a body fit alike this decides; elsewhere it is small beside the distortion.
+/// Chosen on gorillas to humans and teddies, where correlations of right and mirrored maps are
+/// about 0.5 apart and their distortions a few hundredths.
 constexpr double kChiralityWeight = 0.15;
 
 Result<Verdict> play_finals(const Shape& source,

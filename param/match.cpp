@@ -134,7 +134,6 @@ Result<MatchedMap> match_closed(const TriangleMesh& source,
   }
   if (!result) return tl::unexpected(result.error());
   if (winner > 0) matched.margin = 0;
-  matched.valid = validate(result->map, source, target);
   matched.result = std::move(*result);
   if (options.alternatives > 0) stage("others");
   for (const size_t i : differing.empty() ? std::vector<size_t>{} : differing[winner]) {
@@ -152,8 +151,6 @@ Result<MatchedMap> match_closed(const TriangleMesh& source,
 struct Sphere {
   CutMesh cut;
   FilledMesh filled;
-
-  [[nodiscard]] bool was_changed() const { return filled.was_open(); }
 };
 
 Result<Sphere> make_sphere(const TriangleMesh& mesh) {
@@ -174,7 +171,11 @@ Result<MatchedMap> match_and_map(const TriangleMesh& source,
   if (!spheres) return tl::unexpected(spheres.error());
   const auto& [a, b] = *spheres;
   auto matched = match_closed(normalized(a.filled.mesh), normalized(b.filled.mesh), given, options);
-  if (!matched || !(a.was_changed() || b.was_changed())) return matched;
+  if (!matched) return matched;
+  if (!a.filled.was_open() && !b.filled.was_open()) {
+    matched->valid = validate(matched->result.map, source, target);
+    return matched;
+  }
   const auto open = [&](MapResult& result) {
     result.map = without_caps(result.map, a.filled, b.filled);
     result.quality = measure_map(result.map, a.cut.mesh, b.cut.mesh);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "core/cut_handles.hpp"
 #include "param/map_quality.hpp"
 #include "tools/overlay_text.hpp"
 #include "tools/source_texture.hpp"
@@ -51,6 +52,21 @@ Result<MatchedMap> find_map(const PairRun& run, int alternatives, Progress& prog
   return match_and_map(run.source.prepared.mesh, run.target.prepared.mesh, run.landmarks, options);
 }
 
+/// Says whether a map that was given is a bijection: of the surfaces, else, like those that are
+/// found here, of what is left of them when their handles are cut.
+void check_given(MatchedMap& matched, const TriangleMesh& source, const TriangleMesh& target) {
+  const SurfaceMap& map = matched.result.map;
+  matched.valid =
+      matched.is_partial() ? validate_partial(map, source, target) : validate(map, source, target);
+  const std::array<int, 2> handles{genus(source), genus(target)};
+  if (matched.valid || handles[0] + handles[1] == 0) return;
+  matched.handles = handles;
+  matched.valid = cut_handles(source).and_then([&](const CutMesh& a) {
+    return cut_handles(target).and_then(
+        [&](const CutMesh& b) { return validate_partial(map, a.mesh, b.mesh); });
+  });
+}
+
 Result<MatchedMap> read_map(const std::string& path, const PairRun& run, Progress& progress) {
   progress.begin("map");
   const PreparedMesh &source = run.source.prepared, &target = run.target.prepared;
@@ -61,12 +77,9 @@ Result<MatchedMap> read_map(const std::string& path, const PairRun& run, Progres
         matched.margin = std::numeric_limits<double>::infinity();
         matched.result.quality = measure_map(map, source.mesh, target.mesh);
         matched.result.map = std::move(map);
-        matched.handles = {genus(source.mesh), genus(target.mesh)};
         matched.holes = {static_cast<int>(boundary_loops(source.mesh).size()),
                          static_cast<int>(boundary_loops(target.mesh).size())};
-        matched.valid = matched.is_partial()
-                            ? validate_partial(matched.result.map, source.mesh, target.mesh)
-                            : validate(matched.result.map, source.mesh, target.mesh);
+        check_given(matched, source.mesh, target.mesh);
         return matched;
       })
       .map_error([&](const Error& error) { return with_path(path, error); });

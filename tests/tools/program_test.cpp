@@ -320,12 +320,16 @@ TEST_F(PairOfSurfaces, MatchesNameVerticesOfBothFilesOnce) {
 TEST_F(PairOfSurfaces, HandlesAreCutAndTold) {
   write_off("torus.off", shapes::torus(2, 0.7, 20, 10));
   const test::Outcome done =
-      run("map torus.off torus.off --output out/map.txt --json out/map.json");
+      run("map torus.off torus.off --output out/map.txt --json out/map.json --overlay out/overlay");
   EXPECT_EQ(done.exit_code, 0) << done.err;
   EXPECT_THAT(done.err, HasSubstr("1 handle of the source and 1 handle of the target were cut"));
   const auto quality = nlohmann::json::parse(test::read_text(folder / "out/map.json"))["quality"];
   EXPECT_EQ(quality["flipped_triangles"].get<int>(), 0);
   EXPECT_GT(quality["coverage"].get<double>(), 0.9);
+  const test::Outcome again =
+      run("transfer torus.off torus.off --map out/overlay --texture position --output out/a.glb");
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_THAT(again.err, HasSubstr("1 handle of the source and 1 handle of the target were cut"));
 }
 
 TEST_F(PairOfSurfaces, BadLandmarksEndWithThree) {
