@@ -1,114 +1,29 @@
-// The rectangle lies in the plane z = 1; an apex at (0, 0, -1) joined to its rim closes it to a
-// sphere under central projection, so that the exact overlay of spheres serves discs as well.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
-#include <cmath>
 #include <map>
-#include <string>
 #include <utility>
 
 #include "core/index.hpp"
-#include "param/overlay.hpp"
+#include "param/disc_overlay.hpp"
 #include "param/patches.hpp"
-#include "param/predicates.hpp"
 
 namespace crosspatch {
 namespace {
 
 using std::size_t;
 
-struct Closed {
-  TriangleMesh mesh;
-  MatrixX3d X;
-};
-
-Closed close_disc(const PatchDisc& disc, const MatrixX2d& uv) {
-  const int n = disc.mesh.vertex_count(), rim = static_cast<int>(disc.loop.size());
-  MatrixX3i F(disc.mesh.face_count() + rim, 3);
-  F.topRows(disc.mesh.face_count()) = disc.mesh.F;
-  for (int i = 0; i < rim; ++i)
-    F.row(disc.mesh.face_count() + i) << disc.loop[idx((i + 1) % rim)], disc.loop[idx(i)], n;
-  MatrixX3d X(n + 1, 3);
-  X.topLeftCorner(n, 2) = uv;
-  X.col(2).head(n).setOnes();
-  X.row(n) << 0, 0, -1;
-  return {make_mesh(X, F).value(), X};
-}
-
-/// Moves an inner vertex a little, its triangles staying positive; false if it cannot move.
-bool nudge(Closed& closed, int vertex, int attempt) {
-  if (closed.X(vertex, 2) < 0) return false;
-  const TriangleMesh& mesh = closed.mesh;
-  double shortest = HUGE_VAL;
-  for_each_outgoing(mesh, vertex, [&](int h) {
-    shortest = std::min(shortest, (closed.X.row(mesh.to(h)) - closed.X.row(vertex)).norm());
-  });
-  const Vector3d before = closed.X.row(vertex);
-  // Directions by the golden angle, so that attempts do not repeat one.
-  const double angle = 2.399963 * attempt;
-  for (double step = 1e-6 * shortest; step > 1e-13 * shortest; step /= 4) {
-    closed.X.row(vertex) = before + step * Vector3d(std::cos(angle), std::sin(angle), 0);
-    bool positive = true;
-    for_each_outgoing(mesh, vertex, [&](int h) {
-      positive = positive &&
-                 orient_sphere(
-                     closed.X.row(vertex), closed.X.row(mesh.to(h)), closed.X.row(mesh.tip(h))) > 0;
-    });
-    if (positive) return true;
-  }
-  closed.X.row(vertex) = before;
-  return false;
-}
-
-bool on_rim(const PatchDisc& disc, int vertex) {
-  return std::find(disc.loop.begin(), disc.loop.end(), vertex) != disc.loop.end() ||
-         vertex == disc.mesh.vertex_count();
-}
-
-/// Puts the apex below a place of the rectangle that symmetric rims do not have in line with two of
-/// their vertices; another place with each attempt.
-void place_apex(Closed& closed, int attempt) {
-  const double angle = 1 + 2.399963 * attempt;
-  closed.X.bottomRows(1) << 0.1234567 * std::cos(angle), 0.1234567 * std::sin(angle), -1;
-}
-
 Result<SurfaceMap> overlay_patch(const PatchPair& pair, int face) {
-  Closed a = close_disc(pair.source, pair.source_chart.uv);
-  Closed b = close_disc(pair.target, pair.target_chart.uv);
-  constexpr int kAttempts = 500;
-  std::string why;
-  place_apex(a, 0);
-  place_apex(b, 0);
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    SpecialPosition special;
-    auto map = overlay_on_sphere(a.mesh, a.X, b.mesh, b.X, &special);
-    if (map) return map;
-    why = map.error().message;
-    if (special.vertex < 0) break;
-    if (on_rim(special.on_source ? pair.source : pair.target, special.vertex)) {
-      place_apex(a, attempt + 1);
-      place_apex(b, attempt + 1);
-    } else if (!nudge(special.on_source ? a : b, special.vertex, attempt)) {
-      break;
-    }
-  }
-  return fail(ErrorCode::kNumerical, fmt::format("patch {}: {}", face, why));
+  return overlay_discs({pair.source.mesh, pair.source_chart.uv, pair.source.loop},
+                       {pair.target.mesh, pair.target_chart.uv, pair.target.loop})
+      .map_error([&](Error e) {
+        e.message = fmt::format("patch {}: {}", face, e.message);
+        return e;
+      });
 }
 
-/// A point of the closed disc on the drawn mesh. Faces of the rim's cone hold rim vertices only.
-SurfacePoint on_drawn(const PatchDisc& disc,
-                      const TriangleMesh& drawn,
-                      const TriangleMesh& closed,
-                      const SurfacePoint& p) {
-  for (int k = 0; k < 3; ++k)
-    if (p.bary[k] == 1) return disc.origin[idx(closed.F(p.face, k))];
-  if (p.face >= disc.mesh.face_count()) return {};
-  SurfacePoint q{disc.parent_face[idx(p.face)], Vector3d::Zero()};
-  for (int k = 0; k < 3; ++k)
-    q.bary += p.bary[k] * in_face(drawn, disc.origin[idx(closed.F(p.face, k))], q.face).bary;
-  return q;
+SurfacePoint on_drawn(const PatchDisc& disc, const TriangleMesh& drawn, const SurfacePoint& p) {
+  return on_parent(disc.mesh, disc.origin, disc.parent_face, drawn, p);
 }
 
 /// Collects the overlays of the patches; points on arcs are shared, known by arc and share.
@@ -153,16 +68,13 @@ void Gathering::add(const PatchPair& pair, int face, const SurfaceMap& overlay) 
     if (fresh) at->second = new_point(pair.source.origin[idx(a)], pair.target.origin[idx(b)]);
     name[idx(overlay.point_of_source_vertex[idx(a)])] = at->second;
   }
-  const TriangleMesh a = close_disc(pair.source, pair.source_chart.uv).mesh;
-  const TriangleMesh b = close_disc(pair.target, pair.target_chart.uv).mesh;
   for (int p = 0; p < overlay.polygon_count(); ++p) {
-    if (overlay.source_face[idx(p)] >= pair.source.mesh.face_count()) continue;
     for (int i = overlay.polygon_begin[idx(p)]; i < overlay.polygon_begin[idx(p) + 1]; ++i) {
       const int q = overlay.corner[idx(i)];
       int& global = name[idx(q)];
       if (global < 0)
-        global = new_point(on_drawn(pair.source, source_.mesh, a, overlay.source[idx(q)]),
-                           on_drawn(pair.target, target_.mesh, b, overlay.target[idx(q)]));
+        global = new_point(on_drawn(pair.source, source_.mesh, overlay.source[idx(q)]),
+                           on_drawn(pair.target, target_.mesh, overlay.target[idx(q)]));
       map_.corner.push_back(global);
     }
     map_.polygon_begin.push_back(static_cast<int>(map_.corner.size()));
