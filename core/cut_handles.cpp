@@ -9,6 +9,8 @@
 
 #include "core/fill_holes.hpp"
 #include "core/index.hpp"
+#include "core/open_along.hpp"
+#include "core/union_find.hpp"
 
 namespace crosspatch {
 namespace {
@@ -18,24 +20,6 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 struct Loop {
   std::vector<int> vertices;
   double length = kFar;
-};
-
-class UnionFind {
- public:
-  explicit UnionFind(int count) : root_(idx(count)) { std::iota(root_.begin(), root_.end(), 0); }
-  int find(int i) {
-    while (root_[idx(i)] != i) i = root_[idx(i)] = root_[idx(root_[idx(i)])];
-    return i;
-  }
-  /// Whether the two were apart.
-  bool join(int i, int j) {
-    const int a = find(i), b = find(j);
-    root_[idx(std::max(a, b))] = std::min(a, b);
-    return a != b;
-  }
-
- private:
-  std::vector<int> root_;
 };
 
 /// Shortest paths along edges from `base`, through vertices below `vertex_count` only.
@@ -148,45 +132,6 @@ Loop shortest_loop(const TriangleMesh& mesh, int vertex_count) {
   return best;
 }
 
-/// Gives both sides of the marked half-edges vertices of their own. Corners that meet across other
-/// edges stay one vertex; the first of them keeps the number.
-Result<CutMesh> open_along(const CutMesh& cut, const std::vector<bool>& marked) {
-  const TriangleMesh& mesh = cut.mesh;
-  UnionFind corners(mesh.halfedge_count());
-  for (int h = 0; h < mesh.halfedge_count(); ++h) {
-    const int twin = mesh.twin[idx(h)];
-    if (twin < 0 || marked[idx(h)]) continue;
-    corners.join(h, next(twin));
-    corners.join(next(h), twin);
-  }
-  CutMesh opened{{}, cut.vertex, cut.loops};
-  std::vector<int> vertex_of(idx(mesh.halfedge_count()), -1);
-  std::vector<bool> taken(idx(mesh.vertex_count()), false);
-  MatrixX3i F = mesh.F;
-  std::vector<int> copies;
-  for (int c = 0; c < mesh.halfedge_count(); ++c) {
-    int& v = vertex_of[idx(corners.find(c))];
-    const int old = mesh.from(c);
-    if (v < 0 && !taken[idx(old)]) {
-      taken[idx(old)] = true;
-      v = old;
-    } else if (v < 0) {
-      v = mesh.vertex_count() + static_cast<int>(copies.size());
-      copies.push_back(old);
-      opened.vertex.push_back(cut.vertex[idx(old)]);
-    }
-    F(c / 3, c % 3) = v;
-  }
-  MatrixX3d V(mesh.vertex_count() + static_cast<Eigen::Index>(copies.size()), 3);
-  V.topRows(mesh.vertex_count()) = mesh.V;
-  for (std::size_t i = 0; i < copies.size(); ++i)
-    V.row(mesh.vertex_count() + static_cast<Eigen::Index>(i)) = mesh.V.row(copies[i]);
-  auto made = make_mesh(std::move(V), std::move(F));
-  if (!made) return tl::unexpected(made.error());
-  opened.mesh = std::move(*made);
-  return opened;
-}
-
 }  // namespace
 
 Result<CutMesh> cut_handles(const TriangleMesh& mesh) {
@@ -207,12 +152,14 @@ Result<CutMesh> cut_handles(const TriangleMesh& mesh) {
       original.push_back(cut.vertex[idx(u)]);
     }
     const int before = genus(cut.mesh);
-    auto opened = open_along(cut, marked);
-    if (!opened) return opened;
+    auto opened = open_along(cut.mesh, marked);
+    if (!opened) return tl::unexpected(opened.error());
     if (genus(opened->mesh) >= before)
       return fail(ErrorCode::kInternal, "cut: a loop left as many handles as before");
-    opened->loops.push_back(std::move(original));
-    cut = std::move(*opened);
+    for (int& v : opened->vertex) v = cut.vertex[idx(v)];
+    cut.mesh = std::move(opened->mesh);
+    cut.vertex = std::move(opened->vertex);
+    cut.loops.push_back(std::move(original));
   }
   return cut;
 }
