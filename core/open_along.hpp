@@ -13,9 +13,9 @@ struct OpenedMesh {
   std::vector<int> vertex;  ///< per vertex: the given mesh's vertex
 };
 
-/// Gives both sides of the marked edges vertices of their own. `marked`: per half-edge, the same for
-/// twins. Corners that meet across other edges stay one vertex; the first of them keeps the number.
-/// Errors of make_mesh.
+/// Gives both sides of the marked edges vertices of their own. `marked`: per half-edge, the same
+/// for twins. Corners that meet across other edges stay one vertex; the first of them keeps the
+/// number. Errors of make_mesh.
 Result<OpenedMesh> open_along(const TriangleMesh& mesh, const std::vector<bool>& marked);
 
 }  // namespace crosspatch

@@ -4,9 +4,9 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <tuple>
 
-#include "core/cut_handles.hpp"
-#include "core/fill_holes.hpp"
+#include "param/join_openings.hpp"
 
 namespace crosspatch {
 namespace {
@@ -147,38 +147,29 @@ Result<MatchedMap> match_closed(const TriangleMesh& source,
   return matched;
 }
 
-/// A surface made closed and free of handles.
-struct Sphere {
-  CutMesh cut;
-  FilledMesh filled;
-};
-
-Result<Sphere> make_sphere(const TriangleMesh& mesh) {
-  auto cut = cut_handles(mesh);
-  if (!cut) return tl::unexpected(cut.error());
-  auto filled = fill_holes(cut->mesh);
-  if (!filled) return tl::unexpected(filled.error());
-  return Sphere{std::move(*cut), std::move(*filled)};
-}
-
 }  // namespace
 
 Result<MatchedMap> match_and_map(const TriangleMesh& source,
                                  const TriangleMesh& target,
                                  const std::vector<Landmark>& given,
                                  const MatchOptions& options) {
-  const auto spheres = both<Sphere>([&](int i) { return make_sphere(i == 0 ? source : target); });
+  const auto spheres =
+      both<CappedSurface>([&](int i) { return cap_surface(i == 0 ? source : target); });
   if (!spheres) return tl::unexpected(spheres.error());
   const auto& [a, b] = *spheres;
   auto matched = match_closed(normalized(a.filled.mesh), normalized(b.filled.mesh), given, options);
   if (!matched) return matched;
-  if (!a.filled.was_open() && !b.filled.was_open()) {
+  if (a.is_sphere() && b.is_sphere()) {
     matched->valid = validate(matched->result.map, source, target);
     return matched;
   }
+  std::vector<int> kept;
+  for (const Landmark& l : given) kept.push_back(l.source_vertex);
   const auto open = [&](MapResult& result) {
-    result.map = without_caps(result.map, a.filled, b.filled);
-    result.quality = measure_map(result.map, a.cut.mesh, b.cut.mesh);
+    JoinedMap joined = join_openings(result.map, source, a, target, b, kept);
+    result.map = std::move(joined.map);
+    result.quality = measure_map(result.map, source, target);
+    return std::pair(joined.handles, joined.holes);
   };
   // Caps are no part of the surfaces; copies of vertices along cuts are known by the first of them.
   const auto on_surfaces = [&](std::vector<Landmark>& landmarks) {
@@ -190,12 +181,13 @@ Result<MatchedMap> match_and_map(const TriangleMesh& source,
       l.target_vertex = b.cut.vertex[static_cast<size_t>(l.target_vertex)];
     }
   };
-  matched->handles = {static_cast<int>(a.cut.loops.size()), static_cast<int>(b.cut.loops.size())};
-  // Loops through the same vertex leave fewer holes to fill than two each.
-  matched->holes = {static_cast<int>(boundary_loops(source).size()),
-                    static_cast<int>(boundary_loops(target).size())};
-  open(matched->result);
-  matched->valid = validate_partial(matched->result.map, a.cut.mesh, b.cut.mesh);
+  std::tie(matched->handles, matched->holes) = open(matched->result);
+  if (!matched->is_partial())
+    matched->valid = validate(matched->result.map, source, target);
+  else if (matched->handles[0] + matched->handles[1] == 0)
+    matched->valid = validate_partial(matched->result.map, source, target);
+  else
+    matched->valid = validate_partial(matched->result.map, a.cut.mesh, b.cut.mesh);
   for (Alternative& other : matched->alternatives) {
     open(other.result);
     on_surfaces(other.landmarks);

@@ -41,11 +41,11 @@ struct MatchedMap {
   /// Other ways to see it: finished maps of the finals, best first, of which each lies farther than
   /// kSameMap from the winner and from those before it.
   std::vector<Alternative> alternatives;
-  /// Boundary loops of the source and of the target, which were closed for the map and opened
-  /// again.
+  /// Boundary loops of the source and of the target that were closed for the map and opened again,
+  /// without a partner whose rim theirs is taken to.
   std::array<int, 2> holes{0, 0};
-  /// Handles of the source and of the target, which were cut through for the map; along the cuts
-  /// it is not continuous.
+  /// Handles of the source and of the target that were cut through for the map, which does not go
+  /// on across the cuts.
   std::array<int, 2> handles{0, 0};
   /// Whether the map is a bijection, of the surfaces or, with holes or handles, of the parts that
   /// it covers once these are cut; the error says what is wrong.
@@ -57,9 +57,10 @@ struct MatchedMap {
 };
 
 /// Finds the map of two surfaces: cuts their handles, closes their boundary loops, proposes
-/// assignments of their tips, judges them by their bijective maps and optimises the winner. `given`
-/// landmarks are exact in the result; found ones are released in the end. kNoCorrespondence: no
-/// candidate has a map. Other errors are those of the stages.
+/// assignments of their tips, judges them by their bijective maps, optimises the winner and joins
+/// it again across cuts and at rims. `given` landmarks are exact in the result; found ones are
+/// released in the end. kNoCorrespondence: no candidate has a map. Other errors are those of the
+/// stages.
 Result<MatchedMap> match_and_map(const TriangleMesh& source,
                                  const TriangleMesh& target,
                                  const std::vector<Landmark>& given,

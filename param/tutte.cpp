@@ -6,12 +6,13 @@
 #include <fmt/format.h>
 
 #include <Eigen/SparseCholesky>
-#include <Eigen/SparseLU>
+#include <Eigen/UmfPackSupport>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
 
+#include "core/blas.hpp"
 #include "core/index.hpp"
 #include "param/predicates.hpp"
 
@@ -185,10 +186,8 @@ bool solve_inner(const InnerSystem& s, bool symmetric, MatrixX2d& uv) {
     if (solver.info() != Eigen::Success) return false;
     x = solver.solve(s.rhs);
   } else {
-    // Diagonally dominant: pivots stay on the diagonal, so the symmetric ordering fits.
-    Eigen::SparseLU<SparseMatrix, Eigen::AMDOrdering<int>> solver;
-    solver.isSymmetric(true);
-    solver.compute(s.matrix);
+    const SingleThreadedBlas blas;
+    const Eigen::UmfPackLU<SparseMatrix> solver(s.matrix);
     if (solver.info() != Eigen::Success) return false;
     x = solver.solve(s.rhs);
   }

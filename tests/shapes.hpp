@@ -82,4 +82,22 @@ inline TriangleMesh torus(double major, double minor, int rings, int sides) {
   return make_mesh(V, F).value();
 }
 
+/// Two tori side by side, each without a triangle, joined by a tube of six.
+inline TriangleMesh double_torus() {
+  const TriangleMesh a = torus(3, 1, 24, 12);
+  const int n = a.vertex_count(), m = a.face_count();
+  MatrixX3d V(2 * n, 3);
+  V << a.V, a.V.rowwise() + Eigen::RowVector3d(9, 0, 0);
+  MatrixX3i F(2 * (m - 1) + 6, 3);
+  F.topRows(m - 1) = a.F.topRows(m - 1);
+  F.middleRows(m - 1, m - 1) = a.F.topRows(m - 1).array() + n;
+  const Eigen::RowVector3i p = a.F.row(m - 1), q = p.array() + n;
+  for (int k = 0; k < 3; ++k) {
+    const int i = (k + 1) % 3;
+    F.row(2 * (m - 1) + 2 * k) << p[k], p[i], q[(3 - k) % 3];
+    F.row(2 * (m - 1) + 2 * k + 1) << p[i], q[(3 - i) % 3], q[(3 - k) % 3];
+  }
+  return make_mesh(V, F).value();
+}
+
 }  // namespace crosspatch::shapes

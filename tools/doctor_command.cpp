@@ -36,7 +36,7 @@ Result<ExitCode> run(const DoctorArguments&) {
   fmt::print(
       "  {:<16} {} x {} texels\n", "images read", limits.max_image_side, limits.max_image_side);
   fmt::print("  {:<16} {} x {} texels\n", "images baked", kLargestBakeSize, kLargestBakeSize);
-  fmt::print("  {:<16} connected; handles are cut and holes closed for the map\n", "surfaces");
+  fmt::print("  {:<16} connected; handles and holes that only one has end the map\n", "surfaces");
   fmt::print("\nreports (--report): {}\n",
              viewer_script().empty()
                  ? "not in this build: run tools/install_dependencies.sh build, then configure anew"

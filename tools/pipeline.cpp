@@ -52,19 +52,26 @@ Result<MatchedMap> find_map(const PairRun& run, int alternatives, Progress& prog
   return match_and_map(run.source.prepared.mesh, run.target.prepared.mesh, run.landmarks, options);
 }
 
-/// Says whether a map that was given is a bijection: of the surfaces, else, like those that are
-/// found here, of what is left of them when their handles are cut.
+/// Says whether a map that was given is a bijection of the surfaces, else of parts that end at
+/// their holes, else of such parts of what is left of them when their handles are cut.
 void check_given(MatchedMap& matched, const TriangleMesh& source, const TriangleMesh& target) {
   const SurfaceMap& map = matched.result.map;
-  matched.valid =
-      matched.is_partial() ? validate_partial(map, source, target) : validate(map, source, target);
+  matched.valid = validate(map, source, target);
+  if (matched.valid) return;
   const std::array<int, 2> handles{genus(source), genus(target)};
-  if (matched.valid || handles[0] + handles[1] == 0) return;
-  matched.handles = handles;
-  matched.valid = cut_handles(source).and_then([&](const CutMesh& a) {
-    return cut_handles(target).and_then(
-        [&](const CutMesh& b) { return validate_partial(map, a.mesh, b.mesh); });
-  });
+  const std::array<int, 2> holes{static_cast<int>(boundary_loops(source).size()),
+                                 static_cast<int>(boundary_loops(target).size())};
+  if (holes[0] + holes[1] > 0 && validate_partial(map, source, target)) {
+    matched.holes = holes;
+    matched.valid = {};
+  } else if (handles[0] + handles[1] > 0) {
+    matched.handles = handles;
+    matched.holes = holes;
+    matched.valid = cut_handles(source).and_then([&](const CutMesh& a) {
+      return cut_handles(target).and_then(
+          [&](const CutMesh& b) { return validate_partial(map, a.mesh, b.mesh); });
+    });
+  }
 }
 
 Result<MatchedMap> read_map(const std::string& path, const PairRun& run, Progress& progress) {
@@ -77,8 +84,6 @@ Result<MatchedMap> read_map(const std::string& path, const PairRun& run, Progres
         matched.margin = std::numeric_limits<double>::infinity();
         matched.result.quality = measure_map(map, source.mesh, target.mesh);
         matched.result.map = std::move(map);
-        matched.holes = {static_cast<int>(boundary_loops(source.mesh).size()),
-                         static_cast<int>(boundary_loops(target.mesh).size())};
         check_given(matched, source.mesh, target.mesh);
         return matched;
       })

@@ -42,25 +42,9 @@ TEST(CutHandles, CutsATorusAroundItsTube) {
 }
 
 TEST(CutHandles, CutsEveryHandle) {
-  // Two tori joined by identifying a triangle of each, turned against each other.
-  const TriangleMesh a = shapes::torus(3, 1, 24, 12);
-  const int n = a.vertex_count(), m = a.face_count();
-  MatrixX3d V(2 * n, 3);
-  V << a.V, a.V.rowwise() + Eigen::RowVector3d(9, 0, 0);
-  // The faces left out are joined by a tube of six triangles.
-  MatrixX3i F(2 * (m - 1) + 6, 3);
-  F.topRows(m - 1) = a.F.topRows(m - 1);
-  F.middleRows(m - 1, m - 1) = a.F.topRows(m - 1).array() + n;
-  const Eigen::RowVector3i p = a.F.row(m - 1), q = p.array() + n;
-  for (int k = 0; k < 3; ++k) {
-    const int i = (k + 1) % 3;
-    F.row(2 * (m - 1) + 2 * k) << p[k], p[i], q[(3 - k) % 3];
-    F.row(2 * (m - 1) + 2 * k + 1) << p[i], q[(3 - i) % 3], q[(3 - k) % 3];
-  }
-  const auto mesh = make_mesh(V, F);
-  ASSERT_TRUE(mesh) << mesh.error().message;
-  ASSERT_EQ(genus(*mesh), 2);
-  const auto cut = cut_handles(*mesh);
+  const TriangleMesh mesh = shapes::double_torus();
+  ASSERT_EQ(genus(mesh), 2);
+  const auto cut = cut_handles(mesh);
   ASSERT_TRUE(cut) << cut.error().message;
   EXPECT_EQ(genus(cut->mesh), 0);
   EXPECT_EQ(boundary_loops(cut->mesh).size(), 4u);

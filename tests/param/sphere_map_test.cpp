@@ -306,6 +306,30 @@ TEST(FillHoles, ClosesEveryLoopAndKeepsNumbers) {
   EXPECT_FALSE(fill_holes(limbed(2)).value().was_open());
 }
 
+/// Every vertex is mapped, the map covers both surfaces once, and it satisfies its invariants.
+void expect_whole(const MatchedMap& matched,
+                  const TriangleMesh& source,
+                  const TriangleMesh& target) {
+  const MapResult& result = matched.result;
+  const Status valid = validate(result.map, source, target);
+  EXPECT_TRUE(valid) << valid.error().message;
+  EXPECT_NEAR(result.quality.source_coverage, 1, 1e-9);
+  EXPECT_NEAR(result.quality.target_coverage, 1, 1e-9);
+  EXPECT_EQ(result.quality.flipped, 0);
+  const auto expect_at_vertices = [](const TriangleMesh& mesh,
+                                     const std::vector<SurfacePoint>& points,
+                                     const std::vector<int>& point_of_vertex) {
+    for (int v = 0; v < mesh.vertex_count(); ++v) {
+      const int q = point_of_vertex[static_cast<std::size_t>(v)];
+      ASSERT_GE(q, 0) << "vertex " << v;
+      EXPECT_LT((position(mesh, points[static_cast<std::size_t>(q)]) - mesh.position(v)).norm(),
+                1e-9);
+    }
+  };
+  expect_at_vertices(source, result.map.source, result.map.point_of_source_vertex);
+  expect_at_vertices(target, result.map.target, result.map.point_of_target_vertex);
+}
+
 TEST(MatchAndMap, MapsWhatTwoSurfacesHaveInCommon) {
   const TriangleMesh whole = limbed(4), open = cut_below(limbed(3), -0.15);
   const auto matched = match_and_map(whole, open, {}, {});
@@ -328,6 +352,66 @@ TEST(MatchAndMap, MapsWhatTwoSurfacesHaveInCommon) {
   }
   EXPECT_GT(unmapped, 0);
   EXPECT_LT(error / (whole.vertex_count() - unmapped), 0.05);  // an edge of the coarser mesh
+}
+
+TEST(MatchAndMap, TakesTheRimOfAHoleToThatOfTheOther) {
+  const TriangleMesh source = cut_below(limbed(4), -0.15), target = cut_below(limbed(3), -0.15);
+  const auto matched = match_and_map(source, target, {}, {});
+  ASSERT_TRUE(matched) << matched.error().message;
+  EXPECT_FALSE(matched->is_partial());
+  EXPECT_TRUE(matched->valid) << matched->valid.error().message;
+  expect_whole(*matched, source, target);
+}
+
+TEST(MatchAndMap, KeepsLandmarksNearRims) {
+  const TriangleMesh source = cut_below(limbed(4), -0.15), target = cut_below(limbed(3), -0.15);
+  const Landmark on_rims{boundary_loops(source)[0][0], boundary_loops(target)[0][0]};
+  const auto matched = match_and_map(source, target, {on_rims}, {});
+  ASSERT_TRUE(matched) << matched.error().message;
+  EXPECT_TRUE(matched->valid) << matched->valid.error().message;
+  const SurfaceMap& map = matched->result.map;
+  const int q = map.point_of_source_vertex[static_cast<std::size_t>(on_rims.source_vertex)];
+  ASSERT_GE(q, 0);
+  EXPECT_EQ(position(target, map.target[static_cast<std::size_t>(q)]),
+            target.position(on_rims.target_vertex));
+}
+
+/// A torus with a bump, so that no turn of it looks like another one.
+TriangleMesh bumpy_torus(int rings, int sides) {
+  TriangleMesh mesh = shapes::torus(2, 0.7, rings, sides);
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    const Vector3d p = mesh.position(v), middle = 2 * Vector3d(p.x(), p.y(), 0).normalized();
+    const double near = (p - Vector3d(2, 0.5, 0.7)).squaredNorm();
+    mesh.V.row(v) += (p - middle).transpose() * std::exp(-near / 0.3);
+  }
+  return mesh;
+}
+
+TEST(MatchAndMap, GoesOnAcrossCutHandles) {
+  const TriangleMesh source = bumpy_torus(40, 20), target = bumpy_torus(33, 24);
+  const auto matched = match_and_map(source, target, {}, {});
+  ASSERT_TRUE(matched) << matched.error().message;
+  EXPECT_EQ(matched->handles, (std::array<int, 2>{0, 0}));
+  EXPECT_TRUE(matched->valid) << matched->valid.error().message;
+  expect_whole(*matched, source, target);
+}
+
+TEST(MatchAndMap, GoesOnAcrossTheCutsOfEveryHandle) {
+  const TriangleMesh mesh = shapes::double_torus();
+  const auto matched = match_and_map(mesh, mesh, {}, {});
+  ASSERT_TRUE(matched) << matched.error().message;
+  EXPECT_FALSE(matched->is_partial());
+  EXPECT_TRUE(matched->valid) << matched->valid.error().message;
+  expect_whole(*matched, mesh, mesh);
+}
+
+TEST(MatchAndMap, CutsHandlesThatTheOtherSurfaceDoesNotHave) {
+  const TriangleMesh torus = bumpy_torus(20, 10), ball = shapes::icosphere(2);
+  const auto matched = match_and_map(torus, ball, {}, {});
+  ASSERT_TRUE(matched) << matched.error().message;
+  EXPECT_EQ(matched->handles, (std::array<int, 2>{1, 0}));
+  EXPECT_TRUE(matched->valid) << matched->valid.error().message;
+  EXPECT_FALSE(validate(matched->result.map, torus, ball));
 }
 
 }  // namespace
