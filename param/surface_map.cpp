@@ -156,6 +156,23 @@ SurfacePoint in_face(const TriangleMesh& mesh, const SurfacePoint& p, int face) 
   return q;
 }
 
+std::vector<int> faces_at(const TriangleMesh& mesh, const SurfacePoint& p) {
+  std::vector<int> faces{p.face};
+  for (int k = 0; k < 3; ++k) {
+    if (p.bary[k] == 1) {
+      for_each_outgoing(mesh, mesh.F(p.face, k), [&](int h) {
+        if (face_of(h) != p.face) faces.push_back(face_of(h));
+      });
+      return faces;
+    }
+    const int h = 3 * p.face + (k + 1) % 3;  // opposite to corner k
+    if (p.bary[k] == 0 && p.bary[(k + 1) % 3] != 1 && p.bary[(k + 2) % 3] != 1 &&
+        mesh.twin[at(h)] >= 0)
+      faces.push_back(face_of(mesh.twin[at(h)]));
+  }
+  return faces;
+}
+
 SurfaceMap identity_map(const TriangleMesh& mesh) {
   SurfaceMap map;
   for (int v = 0; v < mesh.vertex_count(); ++v) map.source.push_back(point_at_vertex(mesh, v));

@@ -52,6 +52,10 @@ SurfaceMap without_caps(const SurfaceMap& map, const FilledMesh& source, const F
 /// rounding: weight on a corner outside `face` is dropped and the rest rescaled).
 SurfacePoint in_face(const TriangleMesh& mesh, const SurfacePoint& p, int face);
 
+/// The faces that hold `p`: one, the two at an edge, or all around a vertex; weights that are
+/// exactly zero decide.
+std::vector<int> faces_at(const TriangleMesh& mesh, const SurfacePoint& p);
+
 /// The identity of a mesh with itself.
 SurfaceMap identity_map(const TriangleMesh& mesh);
 

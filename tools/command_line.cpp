@@ -7,6 +7,7 @@
 #include <map>
 #include <sstream>
 
+#include "tools/attributes.hpp"
 #include "tools/version.hpp"
 #include "tools/viewer.hpp"
 #include "transfer/bake.hpp"
@@ -252,6 +253,22 @@ CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
                    "'checker' or 'uv' (over them too), or colours by 'position' or by the map's "
                    "'distortion' [its own]")
       ->type_name("FILE|checker|uv|position|distortion");
+  command
+      ->add_option("--attributes",
+                   arguments.attributes,
+                   "Carry these over the map too, given on SOURCE: fields at its vertices (.csv "
+                   "with a header and a row a vertex, or .ply with properties), or landmarks and "
+                   "curves (.json); may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("FILE");
+  command
+      ->add_option("--attributes-output",
+                   arguments.attributes_output,
+                   "Where they go, one for each --attributes, in the numbering of TARGET's file: "
+                   ".csv or .ply for fields, .json or .ply for landmarks and curves [beside the "
+                   "output: OUTPUT_FILE]")
+      ->allow_extra_args(false)
+      ->type_name("FILE");
   add_pair(*command, arguments.pair);
   command->footer(
       "\nExamples:\n"
@@ -259,6 +276,8 @@ CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
       "  crosspatch transfer cow.obj camel.off --landmarks pairs.txt --output camel.glb\n"
       "  crosspatch transfer cow.obj camel.obj --mode bake --size 4096 --output camel.glb\n"
       "  crosspatch transfer cow.obj camel.off --texture hide.png --output camel.gltf\n"
+      "  crosspatch transfer cow.ply camel.off --attributes cow.ply --attributes seams.json \\\n"
+      "      --output camel.glb\n"
       "  crosspatch render camel.glb --output camel.png");
   return command;
 }
@@ -272,6 +291,13 @@ std::string contradiction(const TransferArguments& a) {
   if (a.image_format == ImageFormat::kJpeg && a.bits != 8) return "--bits 16: a JPEG has 8";
   if (!a.pair.files.map.empty() && !a.pair.files.landmarks.empty())
     return "--map and --landmarks: a given map needs no landmarks";
+  if (!a.attributes_output.empty() && a.attributes_output.size() != a.attributes.size())
+    return fmt::format("--attributes-output: given {} times, --attributes {} times",
+                       a.attributes_output.size(),
+                       a.attributes.size());
+  for (const AttributeFiles& files : attribute_files(a.attributes, a.attributes_output, a.output))
+    if (const std::string problem = attribute_files_problem(files); !problem.empty())
+      return problem;
   return "";
 }
 
@@ -366,7 +392,8 @@ std::string config_text(const CLI::App& app) {
   std::istringstream all(command->config_to_str(true, false));
   std::string text = fmt::format("[{}]\n", command->get_name());
   for (std::string line; std::getline(all, line);)
-    if (!line.ends_with("=\"\"")) text += line + '\n';  // not given, and without a default
+    if (!line.ends_with("=\"\"") && !line.ends_with("=[]"))
+      text += line + '\n';  // not given, and without a default
   return text;
 }
 

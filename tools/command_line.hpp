@@ -93,7 +93,9 @@ struct TransferArguments {
   double uv_tolerance_texels = 0.5;  ///< kKeep: see CarryTextureOptions
   int size = 2048;                   ///< kBake: texels a side
   ImageFormat image_format = ImageFormat::kPng;
-  int bits = 8;  ///< kBake: of a channel
+  int bits = 8;                                ///< kBake: of a channel
+  std::vector<std::string> attributes;         ///< files of what else to carry
+  std::vector<std::string> attributes_output;  ///< their outputs; empty = beside `output`
 };
 
 /// crosspatch doctor

@@ -1,5 +1,7 @@
 #include "tools/commands.hpp"
 
+#include "tools/attributes.hpp"
+
 namespace crosspatch {
 namespace {
 
@@ -17,7 +19,12 @@ std::vector<std::string> files(const MapArguments& arguments) {
           arguments.pair.common.json};
 }
 std::vector<std::string> files(const TransferArguments& arguments) {
-  return {arguments.output, arguments.pair.report, arguments.pair.common.json};
+  std::vector<std::string> paths{
+      arguments.output, arguments.pair.report, arguments.pair.common.json};
+  for (const AttributeFiles& attributes :
+       attribute_files(arguments.attributes, arguments.attributes_output, arguments.output))
+    paths.push_back(attributes.output);
+  return paths;
 }
 std::vector<std::string> files(const RenderArguments& arguments) {
   return {arguments.output, arguments.common.json};

@@ -157,10 +157,7 @@ Result<PairRun> read_pair(const PairFiles& files, Progress& progress) {
   return run;
 }
 
-Result<PairRun> run_pair(const PairFiles& files, Progress& progress) {
-  Result<PairRun> read = read_pair(files, progress);
-  if (!read) return read;
-  PairRun run = std::move(*read);
+Status map_pair(const PairFiles& files, PairRun& run, Progress& progress) {
   Result<MatchedMap> matched = files.map.empty() ? find_map(run, files.alternatives, progress)
                                                  : read_map(files.map, run, progress);
   if (!matched) return tl::unexpected(matched.error());
@@ -173,6 +170,13 @@ Result<PairRun> run_pair(const PairFiles& files, Progress& progress) {
             .source,
         run.source.soup);
   progress.end(map_summary(run.matched));
+  return {};
+}
+
+Result<PairRun> run_pair(const PairFiles& files, Progress& progress) {
+  Result<PairRun> run = read_pair(files, progress);
+  if (!run) return run;
+  if (Status s = map_pair(files, *run, progress); !s) return tl::unexpected(s.error());
   return run;
 }
 

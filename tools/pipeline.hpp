@@ -27,6 +27,9 @@ struct PairRun {
 /// file -> soup -> mesh -> landmarks. kBadInput with the file's path.
 Result<PairRun> read_pair(const PairFiles& files, Progress& progress);
 
+/// Adds the map to a pair that has been read, see run_pair.
+Status map_pair(const PairFiles& files, PairRun& run, Progress& progress);
+
 /// file -> soup -> mesh -> landmarks -> map; the map is read where a file of one is given.
 /// Errors are those of the stages, with the file's path where a file is to blame.
 Result<PairRun> run_pair(const PairFiles& files, Progress& progress);

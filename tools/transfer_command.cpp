@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <iterator>
 
+#include "tools/attributes.hpp"
 #include "tools/commands.hpp"
 #include "tools/pair_report.hpp"
 #include "transfer/bake.hpp"
@@ -85,6 +87,17 @@ Result<Transferred> bake(const TransferArguments& arguments, const PairRun& run)
                                  s.seam_error[0])};
 }
 
+/// The files of the mesh, beside each other.
+Result<std::vector<OutputFile>> mesh_outputs(const TexturedMesh& mesh, const std::string& path) {
+  const std::filesystem::path output(path);
+  Result<std::vector<NamedBytes>> encoded = encode_mesh_files(mesh, output.filename().string());
+  if (!encoded) return tl::unexpected(encoded.error());
+  std::vector<OutputFile> outputs;
+  for (NamedBytes& file : *encoded)
+    outputs.push_back({(output.parent_path() / file.name).string(), std::move(file.bytes)});
+  return outputs;
+}
+
 std::map<std::string, std::string> options_in_force(const TransferArguments& arguments) {
   std::map<std::string, std::string> options;
   const bool bakes = arguments.mode == TransferMode::kBake;
@@ -100,26 +113,36 @@ std::map<std::string, std::string> options_in_force(const TransferArguments& arg
 
 Result<ExitCode> run(const TransferArguments& arguments) {
   const PairFiles& files = arguments.pair.files;
-  Progress progress(arguments.pair.common.quiet, kMapStages + 1);
-  const Result<PairRun> run = run_pair(files, progress);
+  Progress progress(arguments.pair.common.quiet, kMapStages + 2);
+  Result<PairRun> run = read_pair(files, progress);
   if (!run) return tl::unexpected(run.error());
+  const std::vector<AttributeFiles> attribute_paths =
+      attribute_files(arguments.attributes, arguments.attributes_output, arguments.output);
+  const Result<std::vector<Attributes>> attributes = read_attributes(attribute_paths, run->source);
+  if (!attributes) return tl::unexpected(attributes.error());
+  if (Status s = map_pair(files, *run, progress); !s) return tl::unexpected(s.error());
   progress.begin("transfer");
   const Result<Transferred> result =
       arguments.mode == TransferMode::kBake ? bake(arguments, *run) : keep(arguments, *run);
   if (!result) return tl::unexpected(result.error());
-  const std::filesystem::path output(arguments.output);
-  Result<std::vector<NamedBytes>> encoded =
-      encode_mesh_files(result->mesh, output.filename().string());
-  if (!encoded) return tl::unexpected(encoded.error());
+  Result<std::vector<OutputFile>> outputs = mesh_outputs(result->mesh, arguments.output);
+  if (!outputs) return tl::unexpected(outputs.error());
   progress.end(result->summary);
-  std::vector<OutputFile> outputs;
-  for (NamedBytes& file : *encoded)
-    outputs.push_back({(output.parent_path() / file.name).string(), std::move(file.bytes)});
   RunReport report = pair_report(arguments.pair, *run);
   report.command = "transfer";
   report.options = options_in_force(arguments);
   for (const auto& [name, value] : result->figures) report.quality[name] = value;
-  return finish(std::move(outputs), std::move(report), arguments.pair, *run, progress);
+  if (!attribute_paths.empty()) {
+    progress.begin("attributes");
+    CarriedAttributes carried = carry_attributes(
+        attribute_paths, *attributes, run->source, run->target, run->matched.result.map);
+    progress.end(carried.summary);
+    std::move(carried.outputs.begin(), carried.outputs.end(), std::back_inserter(*outputs));
+    report.quality.insert(carried.figures.begin(), carried.figures.end());
+    if (!carried.warning.empty()) report.warnings.push_back(carried.warning);
+    for (const AttributeFiles& paths : attribute_paths) report.other_inputs.push_back(paths.input);
+  }
+  return finish(std::move(*outputs), std::move(report), arguments.pair, *run, progress);
 }
 
 }  // namespace crosspatch

@@ -291,6 +291,65 @@ TEST_F(PairOfSurfaces, TransferOptionsThatContradictAreRefused) {
   EXPECT_THAT(written(), testing::IsEmpty());
 }
 
+TEST_F(PairOfSurfaces, AttributesAreCarried) {
+  // The pair has the same triangles; a map that is the identity by vertices shows what arrives.
+  std::string csv = "x,label:half\n";
+  const TriangleMesh mesh = egg(1.6);
+  for (int v = 0; v < mesh.vertex_count(); ++v)
+    csv += std::to_string(mesh.V(v, 0)) + (mesh.V(v, 2) > 0 ? ",1\n" : ",0\n");
+  write("heat.csv", csv);
+  write("marks.json",
+        R"({"landmarks": [{"name": "first", "point": 0}],
+            "curves": [{"name": "way", "points": [0, 1, 2]}]})");
+  const test::Outcome done =
+      run("transfer source.obj target.off --landmarks pairs.txt --output out/a.glb --json "
+          "out/a.json --attributes heat.csv --attributes marks.json --attributes heat.csv "
+          "--attributes-output out/heat.csv --attributes-output out/marks.json "
+          "--attributes-output out/heat.ply");
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(written(), ElementsAre("a.glb", "a.json", "heat.csv", "heat.ply", "marks.json"));
+  EXPECT_THAT(done.err, HasSubstr("4 fields, 1 landmarks, 1 curves"));
+  const auto quality = nlohmann::json::parse(test::read_text(folder / "out/a.json"))["quality"];
+  EXPECT_EQ(quality["attribute_unmapped_vertices"], 0);
+  EXPECT_EQ(quality["attribute_curve_gaps"], 0);
+  const auto lines = text_lines(test::read_text(folder / "out/heat.csv"));
+  ASSERT_EQ(lines.size(), 643u);
+  double x = 0;
+  ASSERT_TRUE(parse_number(lines[1].words[0], x));
+  EXPECT_NEAR(x, mesh.V(0, 0), 1e-5) << "a landmark, met exactly; the CSV has six digits";
+  const auto marks = nlohmann::json::parse(test::read_text(folder / "out/marks.json"));
+  const TriangleMesh target = egg(1.4);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(
+        marks["landmarks"][0]["position"].at(std::size_t(k)).get<double>(), target.V(0, k), 1e-9);
+    EXPECT_NEAR(marks["curves"][0]["positions"].back().at(std::size_t(k)).get<double>(),
+                target.V(2, k),
+                1e-9);
+  }
+  // Its own output is a mesh, and a source of attributes again.
+  const test::Outcome back =
+      run("transfer out/heat.ply source.obj --output out/b.glb --texture position --attributes "
+          "out/heat.ply");
+  EXPECT_EQ(back.exit_code, 0) << back.err;
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/b_heat.ply"));
+}
+
+TEST_F(PairOfSurfaces, AttributesThatDoNotFitAreRefused) {
+  write("short.csv", "a\n1\n");
+  write("marks.json", R"({"landmarks": [{"point": 642}]})");
+  const std::string start = "transfer source.obj target.off --output out/a.glb --attributes ";
+  expect_error(start + "short.csv", 3, "short.csv: 1 rows for 642 vertices");
+  expect_error(start + "marks.json", 3, "vertex 642 is outside [0, 642)");
+  expect_error(start + "gone.csv", 3, "gone.csv");
+  expect_error(start + "target.off", 2, "'target.off' is no .csv, .ply or .json");
+  expect_error(start + "short.csv --attributes-output out/a.json", 2, "is no .csv or .ply");
+  expect_error(start + "short.csv --attributes-output out/a.glb", 2, "is no .csv or .ply");
+  expect_error(start + "short.csv --attributes-output out/a.csv --attributes-output out/b.csv",
+               2,
+               "2 times");
+  expect_error(start + "a.csv --attributes b/a.csv", 2, "named twice");
+}
+
 TEST_F(PairOfSurfaces, MatchesNameVerticesOfBothFilesOnce) {
   for (const std::string method : {"default", "paper"}) {
     const test::Outcome done =
