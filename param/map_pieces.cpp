@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "core/index.hpp"
@@ -40,7 +41,7 @@ MapPieces::MapPieces(const SurfaceMap& map, const TriangleMesh& source, const Tr
       // The determinant is the share of the face that the piece takes: slivers of rounding, which
       // their neighbours cover too, cannot be inverted.
       constexpr double kSliver = 1e-13;
-      if (a.determinant() < kSliver) continue;
+      if (std::abs(a.determinant()) < kSliver) continue;
       pieces_.push_back({a.inverse(), b, fb});
       ++begin_[idx(fa) + 1];
     }

@@ -244,8 +244,17 @@ CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
   command
       ->add_option("--map",
                    arguments.pair.files.map,
-                   "Use this map of the two files, an overlay that 'crosspatch map' wrote [found]")
+                   "Use this map of the two files: an overlay that 'crosspatch map' wrote, or a "
+                   "line a vertex of SOURCE with a vertex of TARGET, or 'face b0 b1 b2', by any "
+                   "program; what is torn in it stays grey and is counted [found]")
       ->type_name("FILE");
+  command
+      ->add_option("--map-base",
+                   arguments.pair.files.map_base,
+                   "What vertices and triangles in the --map are counted from")
+      ->check(CLI::IsMember({0, 1}))
+      ->capture_default_str()
+      ->type_name("0|1");
   command
       ->add_option("--texture",
                    arguments.pair.files.texture,
@@ -289,6 +298,8 @@ std::string contradiction(const TransferArguments& a) {
   if (a.image_format == ImageFormat::kExr && *format != MeshFormat::kObj)
     return "--image exr: only an .obj can refer to EXR images";
   if (a.image_format == ImageFormat::kJpeg && a.bits != 8) return "--bits 16: a JPEG has 8";
+  if (a.pair.files.map_base != 0 && a.pair.files.map.empty())
+    return "--map-base: no --map is given";
   if (!a.pair.files.map.empty() && !a.pair.files.landmarks.empty())
     return "--map and --landmarks: a given map needs no landmarks";
   if (!a.attributes_output.empty() && a.attributes_output.size() != a.attributes.size())

@@ -10,6 +10,7 @@ struct PairFiles {
   std::string target;
   std::string landmarks;  ///< file of corresponding vertices; empty = none
   std::string map;        ///< file of a map of the two to use; empty = find one
+  int map_base = 0;       ///< what that file counts from, 0 or 1; overlays count from 0
   int alternatives = 0;   ///< other maps to be made, at most
   std::string texture;    ///< what the source wears, see give_texture; empty = its own
 };

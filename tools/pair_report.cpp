@@ -11,6 +11,27 @@ constexpr double kCoverageGate = 1 - 1e-9;  // rounding of summed areas
 /// What a map of surfaces with holes has to cover of both: they need not be the same holes.
 constexpr double kPartialCoverageGate = 0.9;
 
+/// What of a map that was given by points could not be used as it is; empty if all could.
+std::string torn_warning(const PointMapStatistics& s) {
+  if (s.torn_source_triangles + s.turned_source_triangles + s.unmapped_source_vertices +
+          s.target_vertices_without + s.unmapped_target_triangles ==
+      0)
+    return "";
+  return fmt::format(
+      "the given map is no continuous one: of {} source triangles {} are torn and {} turned over, "
+      "{} source vertices are unmapped; {} target vertices have no source near, and {} of {} "
+      "target "
+      "triangles stay grey, {} of them torn",
+      s.source_triangles,
+      s.torn_source_triangles,
+      s.turned_source_triangles,
+      s.unmapped_source_vertices,
+      s.target_vertices_without,
+      s.unmapped_target_triangles,
+      s.target_triangles,
+      s.torn_target_triangles);
+}
+
 /// What makes a finished run end with kGateFailed, a sentence each.
 std::vector<std::string> gate_failures(const PairRun& run) {
   const MapQuality& quality = run.matched.result.quality;
@@ -24,6 +45,9 @@ std::vector<std::string> gate_failures(const PairRun& run) {
         fmt::format("the map covers {:.2f} % of the source and {:.2f} % of the target",
                     100 * quality.source_coverage,
                     100 * quality.target_coverage));
+  if (run.from_points)
+    if (const std::string torn = torn_warning(*run.from_points); !torn.empty())
+      warnings.push_back(torn);
   if (!run.matched.valid)
     warnings.push_back("the map is not one-to-one: " + run.matched.valid.error().message);
   return warnings;
@@ -53,7 +77,8 @@ std::string partial_warning(const MatchedMap& matched) {
       100 * matched.result.quality.target_coverage);
 }
 
-std::map<std::string, double> map_figures(const MatchedMap& matched) {
+std::map<std::string, double> map_figures(const PairRun& run) {
+  const MatchedMap& matched = run.matched;
   const MapResult& map = matched.result;
   const MapQuality& quality = map.quality;
   std::map<std::string, double> figures{{"flipped_triangles", quality.flipped},
@@ -66,6 +91,15 @@ std::map<std::string, double> map_figures(const MatchedMap& matched) {
                                         {"worst_stretch", quality.worst_stretch},
                                         {"overlay_points", map.map.point_count()},
                                         {"overlay_polygons", map.map.polygon_count()}};
+  if (run.from_points) {
+    const PointMapStatistics& s = *run.from_points;
+    figures["map_torn_source_triangles"] = s.torn_source_triangles;
+    figures["map_turned_source_triangles"] = s.turned_source_triangles;
+    figures["map_unmapped_source_vertices"] = s.unmapped_source_vertices;
+    figures["map_target_vertices_without_source"] = s.target_vertices_without;
+    figures["map_torn_target_triangles"] = s.torn_target_triangles;
+    figures["map_unmapped_target_triangles"] = s.unmapped_target_triangles;
+  }
   if (matched.ranking.empty()) return figures;  // the map was given
   figures["initial_distortion"] = matched.ranking.front().distortion;
   figures["coarse_energy"] = matched.ranking.front().energy;
@@ -89,7 +123,7 @@ RunReport pair_report(const PairArguments& arguments, const PairRun& run) {
   report.inputs = input_summaries(files, run);
   for (const std::string& other : {files.landmarks, files.map})
     if (!other.empty()) report.other_inputs.push_back(other);
-  report.quality = map_figures(run.matched);
+  report.quality = map_figures(run);
   report.warnings = gate_failures(run);
   report.exit_code =
       static_cast<int>(report.warnings.empty() ? ExitCode::kDone : ExitCode::kGateFailed);

@@ -10,6 +10,7 @@
 #include "core/cut_handles.hpp"
 #include "param/map_quality.hpp"
 #include "tools/overlay_text.hpp"
+#include "tools/point_map_text.hpp"
 #include "tools/source_texture.hpp"
 
 namespace crosspatch {
@@ -74,20 +75,39 @@ void check_given(MatchedMap& matched, const TriangleMesh& source, const Triangle
   }
 }
 
-Result<MatchedMap> read_map(const std::string& path, const PairRun& run, Progress& progress) {
-  progress.begin("map");
+/// The map that a file gives: exact, or by points, which leave `from_points` behind.
+Result<SurfaceMap> parse_given(const std::string& text, int base, PairRun& run) {
   const PreparedMesh &source = run.source.prepared, &target = run.target.prepared;
-  return read_input_text(path)
-      .and_then([&](const std::string& text) { return parse_overlay(text, source, target); })
+  if (is_overlay_text(text)) {
+    if (base != 0) return fail(ErrorCode::kBadInput, "an overlay counts from 0, not from 1");
+    return parse_overlay(text, source, target);
+  }
+  return parse_point_map(text, base, source, target)
+      .and_then([&](const std::vector<SurfacePoint>& images) {
+        return map_from_points(source.mesh, target.mesh, images);
+      })
+      .map([&](PointMap map) {
+        run.from_points = map.statistics;
+        return std::move(map.map);
+      });
+}
+
+Result<MatchedMap> read_map(const PairFiles& files, PairRun& run, Progress& progress) {
+  progress.begin("map");
+  const TriangleMesh &source = run.source.prepared.mesh, &target = run.target.prepared.mesh;
+  return read_input_text(files.map)
+      .and_then([&](const std::string& text) { return parse_given(text, files.map_base, run); })
       .map([&](SurfaceMap map) {
         MatchedMap matched;
         matched.margin = std::numeric_limits<double>::infinity();
-        matched.result.quality = measure_map(map, source.mesh, target.mesh);
+        matched.result.quality = measure_map(map, source, target);
+        if (run.from_points)
+          matched.result.quality.source_coverage = run.from_points->source_coverage;
         matched.result.map = std::move(map);
-        check_given(matched, source.mesh, target.mesh);
+        check_given(matched, source, target);
         return matched;
       })
-      .map_error([&](const Error& error) { return with_path(path, error); });
+      .map_error([&](const Error& error) { return with_path(files.map, error); });
 }
 
 std::string map_summary(const MatchedMap& matched) {
@@ -159,7 +179,7 @@ Result<PairRun> read_pair(const PairFiles& files, Progress& progress) {
 
 Status map_pair(const PairFiles& files, PairRun& run, Progress& progress) {
   Result<MatchedMap> matched = files.map.empty() ? find_map(run, files.alternatives, progress)
-                                                 : read_map(files.map, run, progress);
+                                                 : read_map(files, run, progress);
   if (!matched) return tl::unexpected(matched.error());
   run.matched = std::move(*matched);
   if (files.texture == "distortion")

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/spectral_matching.hpp"
 #include "param/match.hpp"
+#include "param/point_map.hpp"
 #include "tools/input.hpp"
 #include "tools/landmarks.hpp"
 #include "tools/pair_files.hpp"
@@ -22,6 +24,8 @@ struct PairRun {
   InputMesh target;
   std::vector<Landmark> landmarks;  ///< vertices of the prepared meshes
   MatchedMap matched;               ///< from the source's prepared mesh to the target's
+  /// What became of a map that was given by points; unset for others.
+  std::optional<PointMapStatistics> from_points;
 };
 
 /// file -> soup -> mesh -> landmarks. kBadInput with the file's path.

@@ -291,6 +291,86 @@ TEST_F(PairOfSurfaces, TransferOptionsThatContradictAreRefused) {
   EXPECT_THAT(written(), testing::IsEmpty());
 }
 
+TEST_F(PairOfSurfaces, MapsOfOtherProgramsAreUsed) {
+  // Both have the same vertices: the identity maps one onto the other, counted from 0 or from 1.
+  std::string from_zero, from_one, scattered;
+  for (int v = 0; v < 642; ++v) {
+    from_zero += std::to_string(v) + '\n';
+    from_one += std::to_string(v + 1) + '\n';
+    scattered += std::to_string(v * 251 % 642) + '\n';
+  }
+  write("zero.txt", from_zero);
+  write("one.txt", from_one);
+  write("scattered.txt", scattered);
+  const std::string pair = "transfer source.obj target.off --quiet --output out/";
+  const test::Outcome zero = run(pair + "zero.glb --map zero.txt --json out/zero.json");
+  EXPECT_EQ(zero.exit_code, 0) << zero.err;
+  EXPECT_EQ(zero.err, "");
+  EXPECT_EQ(run(pair + "one.glb --map one.txt --map-base 1").exit_code, 0);
+  EXPECT_EQ(test::read_text(folder / "out/zero.glb"), test::read_text(folder / "out/one.glb"));
+  const auto quality = nlohmann::json::parse(test::read_text(folder / "out/zero.json"))["quality"];
+  EXPECT_EQ(quality["triangles"], 1280) << "no triangle is cut";
+  EXPECT_EQ(quality["map_torn_source_triangles"], 0);
+  EXPECT_EQ(run(pair + "bake.glb --map zero.txt --texture checker --mode bake --size 64").exit_code,
+            0);
+  // A permutation is torn all over.
+  const test::Outcome torn = run(pair + "torn.glb --map scattered.txt --json out/torn.json");
+  EXPECT_EQ(torn.exit_code, 1);
+  EXPECT_THAT(torn.err, HasSubstr("the given map is no continuous one: of 1280 source triangles"));
+  EXPECT_THAT(torn.err, HasSubstr("target triangles stay grey"));
+  const auto report = nlohmann::json::parse(test::read_text(folder / "out/torn.json"));
+  EXPECT_GT(report["quality"]["map_torn_source_triangles"], 1150);
+  EXPECT_EQ(report["exit_code"], 1);
+}
+
+TEST_F(PairOfSurfaces, AMapOfPointsIsNearTheOneItWasWrittenFrom) {
+  ASSERT_EQ(run("map source.obj target.off --landmarks pairs.txt --quiet --output out/map.txt "
+                "--overlay out/overlay.txt")
+                .exit_code,
+            0);
+  std::string csv = "x,y,z\n";
+  const TriangleMesh source = egg(1.6);
+  for (const auto& p : source.V.rowwise())
+    csv += std::to_string(p.x()) + ',' + std::to_string(p.y()) + ',' + std::to_string(p.z()) + '\n';
+  write("places.csv", csv);
+  for (const std::string name : {"map", "overlay"}) {
+    const test::Outcome done =
+        run("transfer source.obj target.off --quiet --map out/" + name + ".txt --output out/" +
+            name + ".glb --attributes places.csv --json out/" + name + ".json");
+    // At most, some thin pieces are turned over.
+    EXPECT_THAT(done.exit_code, testing::AnyOf(0, name == "map" ? 1 : 0)) << done.err;
+    const auto report = nlohmann::json::parse(test::read_text(folder / ("out/" + name + ".json")));
+    EXPECT_NEAR(report["quality"]["coverage"].get<double>(), 1, 1e-6);
+  }
+  const std::string a = test::read_text(folder / "out/map_places.csv");
+  const std::string b = test::read_text(folder / "out/overlay_places.csv");
+  const auto points = text_lines(a), exact = text_lines(b);
+  ASSERT_EQ(points.size(), 643u);
+  double sum = 0;
+  for (std::size_t i = 1; i < points.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      double p = 0, q = 0;
+      ASSERT_TRUE(parse_number(points[i].words[k], p) && parse_number(exact[i].words[k], q));
+      sum += std::abs(p - q);
+    }
+  // An edge is about 0.18 long; between the points the map is unknown.
+  EXPECT_LT(sum / 642, 0.03);
+}
+
+TEST_F(PairOfSurfaces, MapsThatDoNotFitAreRefused) {
+  write("short.txt", "1\n2\n");
+  write("range.txt", "642\n");
+  write("sum.txt", "3 0.5 0.6 0\n");
+  write("overlay.txt", "crosspatch-overlay 1\n0 0\n");
+  const std::string start = "transfer source.obj target.off --output out/a.glb ";
+  expect_error(start + "--map short.txt", 3, "short.txt: 2 lines for the source's 642 vertices");
+  expect_error(start + "--map range.txt", 3, "range.txt: line 1: vertex 642 is outside [0, 642)");
+  expect_error(start + "--map sum.txt", 3, "sum.txt: line 1: barycentric coordinates sum to 1.1");
+  expect_error(start + "--map overlay.txt --map-base 1", 3, "an overlay counts from 0, not from 1");
+  expect_error(start + "--map-base 1", 2, "--map-base: no --map is given");
+  expect_error(start + "--map short.txt --map-base 2", 2, "--map-base");
+}
+
 TEST_F(PairOfSurfaces, AttributesAreCarried) {
   // The pair has the same triangles; a map that is the identity by vertices shows what arrives.
   std::string csv = "x,label:half\n";

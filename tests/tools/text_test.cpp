@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <tuple>
 
 #include "program.hpp"
 #include "shapes.hpp"
@@ -10,6 +11,7 @@
 #include "tools/map_text.hpp"
 #include "tools/output_files.hpp"
 #include "tools/overlay_text.hpp"
+#include "tools/point_map_text.hpp"
 #include "tools/sha256.hpp"
 #include "tools/text_lines.hpp"
 
@@ -113,6 +115,64 @@ TEST(OverlayText, IsRefusedWithItsLine) {
             "line 3: triangle 9 is no part of the mesh");
   EXPECT_EQ(message("crosspatch-overlay 1\n1 1\n0 1 0 0 0 1 0 0\n3 0 0 1 0 0\n"),
             "line 4: point 1 is outside [0, 1)");
+}
+
+TEST(PointMapText, BothFormsCountFromWhatIsSaid) {
+  const PreparedMesh mesh = unchanged(shapes::tetrahedron());
+  const auto vertices = parse_point_map("3\n-1 # none\n1\n0\n", 0, mesh, mesh);
+  ASSERT_TRUE(vertices) << vertices.error().message;
+  EXPECT_EQ(position(mesh.mesh, (*vertices)[0]), mesh.mesh.position(3));
+  EXPECT_FALSE((*vertices)[1].valid());
+  const auto from_one = parse_point_map("4\n-1\n2\n1\n", 1, mesh, mesh);
+  ASSERT_TRUE(from_one) << from_one.error().message;
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ((*from_one)[i].face, (*vertices)[i].face);
+    EXPECT_EQ((*from_one)[i].bary, (*vertices)[i].bary);
+  }
+  const auto points =
+      parse_point_map("1 0.5 0.25 0.25\n4 1 0 0\n-1 0 0 0\n2,0,0,1\n", 1, mesh, mesh);
+  ASSERT_TRUE(points) << points.error().message;
+  EXPECT_EQ((*points)[0].face, 0);
+  EXPECT_EQ((*points)[0].bary, Vector3d(0.5, 0.25, 0.25));
+  EXPECT_EQ((*points)[1].face, 3);
+  EXPECT_FALSE((*points)[2].valid());
+}
+
+TEST(PointMapText, WeldedVerticesTakeTheFirstImage) {
+  PreparedMesh mesh = unchanged(shapes::tetrahedron());
+  mesh.numbering.mesh_vertex = {0, 0, 1, 2, 3, -1};
+  const auto points =
+      parse_point_map("-1\n2\n3\n4\n1\n5\n", 0, mesh, mesh);  // target vertices of the same file
+  ASSERT_TRUE(points) << points.error().message;
+  ASSERT_EQ(points->size(), 4u);
+  EXPECT_EQ(position(mesh.mesh, (*points)[0]), mesh.mesh.position(1));
+  EXPECT_EQ(position(mesh.mesh, (*points)[3]), mesh.mesh.position(0));
+}
+
+TEST(PointMapText, IsRefusedWithItsLine) {
+  const PreparedMesh mesh = unchanged(shapes::tetrahedron());
+  for (const auto& [text, base, message] : std::vector<std::tuple<std::string, int, std::string>>{
+           {"0\n1\n2\n", 0, "3 lines for the source's 4 vertices"},
+           {"0\n1\n2\n3\n0\n", 0, "5 lines for the source's 4 vertices"},
+           {"", 0, "0 lines for the source's 4 vertices"},
+           {"0\n5\n2\n3\n", 0, "line 2: vertex 5 is outside [0, 4)"},
+           {"1\n4\n2\n3\n", 0, "line 2: vertex 4 is outside [0, 4); --map-base 1 tells that"},
+           {"1\n0\n2\n3\n", 1, "line 2: vertex 0 is outside [1, 5)"},
+           {"1\n-2\n2\n3\n", 0, "line 2: vertex -2 is outside [0, 4)"},
+           {"1\nx\n2\n3\n", 0, "line 2: 'x' is no vertex"},
+           {"1\n0.5\n2\n3\n", 0, "line 2: '0.5' is no vertex"},
+           {"1 2\n", 0, "line 1: 2 columns, neither 1 ('vertex') nor 4 ('face b0 b1 b2')"},
+           {"1\n2 1 0 0\n", 0, "line 2: 4 columns, the first line has 1"},
+           {"9 1 0 0\n", 0, "line 1: triangle 9 is outside [0, 4)"},
+           {"0 1 0 z\n", 0, "line 1: not of the form 'face b0 b1 b2'"},
+           {"0 1 1 0\n", 0, "line 1: barycentric coordinates sum to 2, not 1"},
+           {"0 2 -1 0\n", 0, "line 1: barycentric coordinate -1 is negative"},
+           {"0 nan 0 0\n", 0, "line 1: barycentric coordinates sum to nan, not 1"}}) {
+    const auto points = parse_point_map(text, base, mesh, mesh);
+    ASSERT_FALSE(points) << text;
+    EXPECT_THAT(points.error().message, testing::HasSubstr(message));
+    EXPECT_EQ(points.error().code, ErrorCode::kBadInput);
+  }
 }
 
 TEST(Landmarks, AreReadWithComments) {
