@@ -27,8 +27,9 @@ namespace {
 
 /// The source as a sphere.
 struct Embedded {
-  TriangleMesh mesh;  ///< without handles and holes; the source's faces come first
-  int face_count = 0;
+  TriangleMesh mesh;     ///< without handles and holes; caps come behind the source's faces
+  int face_count = 0;    ///< without caps
+  int vertex_count = 0;  ///< ditto
   MatrixX3d X;
 };
 
@@ -59,7 +60,8 @@ Result<Embedded> embed(const TriangleMesh& source) {
   if (!cut) return tl::unexpected(cut.error());
   auto filled = fill_holes(cut->mesh);
   if (!filled) return tl::unexpected(filled.error());
-  Embedded embedded{normalized(std::move(filled->mesh)), source.face_count(), {}};
+  Embedded embedded{
+      normalized(std::move(filled->mesh)), source.face_count(), filled->vertex_count, {}};
   const auto progressive = make_progressive_mesh(embedded.mesh);
   if (!progressive) return tl::unexpected(progressive.error());
   auto X = embed_in_sphere(embedded.mesh, *progressive);
@@ -97,6 +99,14 @@ double signed_area(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   return a.dot(b.cross(c));
 }
 
+double area_share(const Clipped& polygon) {
+  double area = 0;
+  for (std::size_t c = 1; c + 1 < polygon.corners.size(); ++c)
+    area +=
+        signed_area(polygon.corners[0].bary, polygon.corners[c].bary, polygon.corners[c + 1].bary);
+  return area;
+}
+
 /// One target triangle, gone back to the sphere.
 class Clipper {
  public:
@@ -128,9 +138,7 @@ class Clipper {
             source_.mesh.twin[idx(h)] >= 0)
           visit(face_of(source_.mesh.twin[idx(h)]));
       }
-      for (std::size_t c = 1; c + 1 < polygon.corners.size(); ++c)
-        area += signed_area(
-            polygon.corners[0].bary, polygon.corners[c].bary, polygon.corners[c + 1].bary);
+      area += area_share(polygon);
       result.push_back(std::move(polygon));
     }
     constexpr double kMissing = 1e-7;  // as finely as the transfer asks whether a face is filled
@@ -346,6 +354,9 @@ class Builder {
       if (embedded_.mesh.F(polygon.face, k) == c.line.a) p.bary[k] = alpha / (alpha + beta);
       if (embedded_.mesh.F(polygon.face, k) == c.line.b) p.bary[k] = beta / (alpha + beta);
     }
+    // A line across a cap has one end on the source: that is where its points are taken.
+    if (c.line.b >= embedded_.vertex_count && polygon.face < embedded_.face_count)
+      for (int k = 0; k < 3; ++k) p.bary[k] = embedded_.mesh.F(polygon.face, k) == c.line.a ? 1 : 0;
     return p;
   }
 
@@ -391,10 +402,31 @@ class Builder {
       ++result_.statistics.torn_target_triangles;
       return {};
     }
-    const bool beyond = std::any_of(pieces.begin(), pieces.end(), [&](const Clipped& piece) {
-      return piece.face >= embedded_.face_count;
-    });
-    return beyond ? std::vector<Clipped>{} : pieces;
+    return take_off_caps(pieces) ? pieces : std::vector<Clipped>{};
+  }
+
+  /// Great circles bulge over the outline of an open source: what lies on a cap is taken to the
+  /// edge of the source before it. False where a triangle does not just reach over the outline.
+  [[nodiscard]] bool take_off_caps(std::vector<Clipped>& pieces) const {
+    constexpr double kMostBeyond = 0.5;  // ours: else most of the triangle lies over a hole
+    double beyond = 0;
+    for (Clipped& piece : pieces) {
+      if (piece.face < embedded_.face_count) continue;
+      beyond += area_share(piece);
+      const bool has_middle =
+          std::any_of(piece.corners.begin(), piece.corners.end(), [&](const Corner& c) {
+            return c.source_vertex >= embedded_.vertex_count;
+          });
+      int before = -1, sides = 0;
+      for (int h = 3 * piece.face; h < 3 * piece.face + 3; ++h)
+        if (const int f = face_of(embedded_.mesh.twin[idx(h)]); f < embedded_.face_count) {
+          before = f;
+          ++sides;
+        }
+      if (has_middle || sides != 1) return false;  // a hole of three edges has no inside
+      piece.face = before;
+    }
+    return beyond <= kMostBeyond;
   }
 
   [[nodiscard]] Vector3d embedded_position(int v) const {

@@ -8,6 +8,8 @@
 #include "param/map_quality.hpp"
 #include "param/pull_back.hpp"
 #include "shapes.hpp"
+#include "transfer/carry_texture.hpp"
+#include "transfer/surfaces.hpp"
 
 namespace crosspatch {
 namespace {
@@ -168,6 +170,66 @@ TEST(PointMap, OpenSurfacesKeepTheirOutline) {
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_TRUE(validate(made->map, mesh, mesh)) << validate(made->map, mesh, mesh).error().message;
   EXPECT_EQ(made->statistics.unmapped_target_triangles, 0);
+}
+
+TEST(PointMap, TrianglesAlongAnOutlineAreKept) {
+  const TriangleMesh a = shapes::jittered_grid(shapes::grid(9), 9, 1);
+  const TriangleMesh b = shapes::jittered_grid(shapes::grid(8), 8, 2);
+  std::vector<SurfacePoint> images;
+  for (int v = 0; v < a.vertex_count(); ++v)
+    for (int f = 0; f < b.face_count(); ++f) {
+      const Vector3d bary = shapes::planar_barycentric(b, f, a.position(v).head<2>());
+      if (bary.minCoeff() < -1e-12) continue;
+      images.push_back({f, bary.cwiseMax(0.0)});
+      break;
+    }
+  ASSERT_EQ(images.size(), static_cast<std::size_t>(a.vertex_count()));
+  const auto made = map_from_points(a, b, images);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_TRUE(validate_partial(made->map, a, b));
+  EXPECT_EQ(made->statistics.unmapped_target_triangles, 0);
+  EXPECT_EQ(measure_map(made->map, a, b).flipped, 0);
+  EXPECT_LT(largest_miss(made->map, a, b), 1e-9) << "planes have no chords";
+}
+
+TEST(PointMap, CarriesTexturesWithoutCracksOrStraddledSeams) {
+  // The two halves of the sphere have charts of their own, u below 0.45 and above 0.55.
+  const TriangleMesh a = shapes::icosphere(3), b = turned(shapes::icosphere(3));
+  shapes::Surface source = shapes::surface_of(a);
+  shapes::texture(
+      source,
+      [&](int f, const Vector3d& p) {
+        const double middle = a.V(a.F(f, 0), 0) + a.V(a.F(f, 1), 0) + a.V(a.F(f, 2), 0);
+        const double u = 0.25 + 0.15 * p[1];
+        return Vector2d(middle < 0 ? u : 0.5 + u, 0.5 + 0.4 * p[2]);
+      },
+      512);
+  const shapes::Surface target = shapes::surface_of(b);
+  for (const bool folded : {false, true}) {
+    // Vertices that change places with a neighbour fold the map all over.
+    std::vector<int> images = nearest(a, b);
+    if (folded)
+      for (int v = 0; v < a.vertex_count(); v += 7) {
+        const int w = a.to(a.out[static_cast<std::size_t>(v)]);
+        std::swap(images[static_cast<std::size_t>(v)], images[static_cast<std::size_t>(w)]);
+      }
+    const auto made = map_from_points(a, b, at_vertices(b, images));
+    ASSERT_TRUE(made) << made.error().message;
+    const auto carried = carry_texture(source.view(), target.view(), made->map);
+    ASSERT_TRUE(carried) << carried.error().message;
+    EXPECT_GT(carried->statistics.coverage, folded ? 0.9 : 1 - 1e-9);
+    const TexturedMesh& mesh = carried->mesh;
+    EXPECT_EQ(shapes::loose_sides(mesh), 0);
+    for (int t = 0; t < mesh.triangle_count(); ++t) {
+      if (mesh.materials[static_cast<std::size_t>(mesh.material[static_cast<std::size_t>(t)])]
+              .name != "skin")
+        continue;
+      int right = 0;
+      for (std::size_t k = 0; k < 3; ++k)
+        right += mesh.uv_sets[0][3 * static_cast<std::size_t>(t) + k][0] > 0.5 ? 1 : 0;
+      EXPECT_TRUE(right == 0 || right == 3) << t;
+    }
+  }
 }
 
 TEST(PointMap, HandlesAreCut) {
