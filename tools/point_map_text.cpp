@@ -13,6 +13,8 @@ namespace {
 /// An index of the file counted from 0, or -1.
 Result<int> parse_index(const TextLine& line, int base, std::size_t count, const char* thing) {
   int index = 0;
+  double written = 0;
+  if (parse_number(line.words[0], written) && std::isnan(written)) return -1;
   if (!parse_number(line.words[0], index))
     return fail(ErrorCode::kBadInput,
                 fmt::format("line {}: '{}' is no {}", line.number, line.words[0], thing));

@@ -9,8 +9,8 @@ namespace crosspatch {
 
 /// Reads a map of points that any program wrote: a line a vertex of the source's file with either
 /// one number, a vertex of the target's file, or four, `face b0 b1 b2`, a point of one of its
-/// triangles. Vertices and triangles are counted from `base`, 0 or 1; -1 means unmapped (0 0 0
-/// behind it in the form of four). Blank lines and what follows a `#` are passed over.
+/// triangles. Vertices and triangles are counted from `base`, 0 or 1; -1 or nan means unmapped
+/// (any numbers behind it in the form of four). Blank lines and what follows a `#` are passed over.
 ///
 /// Returns a point of the target's mesh for each vertex of the source's mesh: where vertices of the
 /// file were welded, that of the first which has one; none for images in parts that are left out.

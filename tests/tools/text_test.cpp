@@ -123,7 +123,7 @@ TEST(PointMapText, BothFormsCountFromWhatIsSaid) {
   ASSERT_TRUE(vertices) << vertices.error().message;
   EXPECT_EQ(position(mesh.mesh, (*vertices)[0]), mesh.mesh.position(3));
   EXPECT_FALSE((*vertices)[1].valid());
-  const auto from_one = parse_point_map("4\n-1\n2\n1\n", 1, mesh, mesh);
+  const auto from_one = parse_point_map("4\nNaN\n2\n1\n", 1, mesh, mesh);
   ASSERT_TRUE(from_one) << from_one.error().message;
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ((*from_one)[i].face, (*vertices)[i].face);
