@@ -1,10 +1,3 @@
-// Notation: X row a is source vertex a on the sphere, scaled; Y_u = sum s_k X_k is the place of
-// target vertex u, with s its barycentric coordinates on the source. A point b (barycentric) of the
-// target triangle uvw lies at y = b0 Y_u + b1 Y_v + b2 Y_w, and in source face F where
-// det(X_a, X_b, y) >= 0 for each edge (a, b) of F: linear functions of b, by which the triangle is
-// clipped. Signs at points on a source edge or vertex are exact, because their zero terms are left
-// out, and what is decided along an edge of the target depends on its two ends only, so that both
-// its triangles are cut alike.
 #include "param/point_map.hpp"
 
 #include <algorithm>
@@ -20,18 +13,11 @@
 #include "core/index.hpp"
 #include "core/progressive_mesh.hpp"
 #include "param/pull_back.hpp"
+#include "param/sphere_clip.hpp"
 #include "param/sphere_refinement.hpp"
 
 namespace crosspatch {
 namespace {
-
-/// The source as a sphere.
-struct Embedded {
-  TriangleMesh mesh;     ///< without handles and holes; caps come behind the source's faces
-  int face_count = 0;    ///< without caps
-  int vertex_count = 0;  ///< ditto
-  MatrixX3d X;
-};
 
 /// Great circles meet the surface most evenly when the vertices are scaled by the root of how much
 /// the surface is larger there: of a scale that changes by a constant factor a length, the middle
@@ -55,12 +41,12 @@ void scale_rows(const TriangleMesh& mesh, MatrixX3d& X) {
       X.row(v) *= std::pow(on_surface[v] / on_sphere[v], 0.25);  // areas, hence the fourth root
 }
 
-Result<Embedded> embed(const TriangleMesh& source) {
+Result<SphereSource> embed(const TriangleMesh& source) {
   const auto cut = cut_handles(source);
   if (!cut) return tl::unexpected(cut.error());
   auto filled = fill_holes(cut->mesh);
   if (!filled) return tl::unexpected(filled.error());
-  Embedded embedded{
+  SphereSource embedded{
       normalized(std::move(filled->mesh)), source.face_count(), filled->vertex_count, {}};
   const auto progressive = make_progressive_mesh(embedded.mesh);
   if (!progressive) return tl::unexpected(progressive.error());
@@ -70,201 +56,6 @@ Result<Embedded> embed(const TriangleMesh& source) {
   scale_rows(embedded.mesh, embedded.X);
   return embedded;
 }
-
-/// A line across the target triangle: one of its sides (0, 1, 2), or a source edge.
-struct Line {
-  int side = -1;
-  int a = -1, b = -1;  ///< ends of the source edge, a < b
-  bool operator==(const Line&) const = default;
-};
-
-/// A corner of a clipped polygon: where two lines meet.
-struct Corner {
-  Vector3d bary;    ///< in the target triangle, sums to 1
-  int vertex = -1;  ///< of the triangle, 0 to 2
-  int side = -1;    ///< of the triangle, where it lies on one between its ends
-  Line line;        ///< the source edge that crosses there
-  int source_vertex = -1;
-};
-
-/// A clipped polygon; side i, on `lines[i]`, runs from corner i to the next.
-struct Clipped {
-  int face = -1;
-  std::vector<Corner> corners;
-  std::vector<Line> lines;
-};
-
-/// Share of a face that the triangle takes whose corners have these barycentric coordinates.
-double signed_area(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-  return a.dot(b.cross(c));
-}
-
-double area_share(const Clipped& polygon) {
-  double area = 0;
-  for (std::size_t c = 1; c + 1 < polygon.corners.size(); ++c)
-    area +=
-        signed_area(polygon.corners[0].bary, polygon.corners[c].bary, polygon.corners[c + 1].bary);
-  return area;
-}
-
-/// One target triangle, gone back to the sphere.
-class Clipper {
- public:
-  Clipper(const Embedded& source,
-          const std::array<SurfacePoint, 3>& points,
-          const std::array<int, 3>& vertices)
-      : source_(source), points_(points), vertices_(vertices) {}
-
-  /// The polygons by which source faces fill the triangle; nothing where they do not fill it.
-  std::vector<Clipped> run() {
-    std::vector<int> waiting;
-    std::set<int> seen;
-    const auto visit = [&](int face) {
-      if (seen.insert(face).second) waiting.push_back(face);
-    };
-    for (const SurfacePoint& p : points_)
-      for (const int face : faces_at(source_.mesh, p)) visit(face);
-    std::vector<Clipped> result;
-    double area = 0;
-    // Ours: a triangle over more source faces than this is no triangle of a continuous map.
-    constexpr std::size_t kMostFaces = 5000;
-    for (std::size_t i = 0; i < waiting.size() && i < kMostFaces; ++i) {
-      Clipped polygon = clip(waiting[i]);
-      if (polygon.corners.size() < 3) continue;
-      for (int k = 0; k < 3; ++k) {
-        const int h = 3 * waiting[i] + k;
-        const Line line = edge_line(h);
-        if (std::find(polygon.lines.begin(), polygon.lines.end(), line) != polygon.lines.end() &&
-            source_.mesh.twin[idx(h)] >= 0)
-          visit(face_of(source_.mesh.twin[idx(h)]));
-      }
-      area += area_share(polygon);
-      result.push_back(std::move(polygon));
-    }
-    constexpr double kMissing = 1e-7;  // as finely as the transfer asks whether a face is filled
-    if (std::abs(area - 1) > kMissing) return {};
-    return result;
-  }
-
- private:
-  [[nodiscard]] Line edge_line(int h) const {
-    const auto [a, b] = std::minmax({source_.mesh.from(h), source_.mesh.to(h)});
-    return {-1, a, b};
-  }
-
-  [[nodiscard]] Vector3d place(int corner) const {
-    const SurfacePoint& p = points_[idx(corner)];
-    Vector3d y = Vector3d::Zero();
-    for (int k = 0; k < 3; ++k)
-      y += p.bary[k] * source_.X.row(source_.mesh.F(p.face, k)).transpose();
-    return y;
-  }
-
-  /// det(X_a, X_b, Y) at a corner of the triangle.
-  [[nodiscard]] double value(const Line& line, int corner) const {
-    const SurfacePoint& p = points_[idx(corner)];
-    const Vector3d n =
-        Vector3d(source_.X.row(line.a).transpose()).cross(source_.X.row(line.b).transpose());
-    double sum = 0;
-    for (int k = 0; k < 3; ++k) {
-      const int v = source_.mesh.F(p.face, k);
-      if (v != line.a && v != line.b && p.bary[k] != 0)
-        sum += p.bary[k] * n.dot(source_.X.row(v).transpose());
-    }
-    return sum;
-  }
-
-  /// Where the line crosses a side of the triangle, computed from the end with the smaller number.
-  [[nodiscard]] Vector3d crossing(int side, const std::array<double, 3>& values) const {
-    int i = side, j = (side + 1) % 3;
-    if (vertices_[idx(i)] > vertices_[idx(j)]) std::swap(i, j);
-    const double t = values[idx(i)] / (values[idx(i)] - values[idx(j)]);
-    Vector3d bary = Vector3d::Zero();
-    bary[i] = 1 - t;
-    bary[j] = t;
-    return bary;
-  }
-
-  static double at(const std::array<double, 3>& values, const Corner& corner) {
-    if (corner.vertex >= 0) return values[idx(corner.vertex)];
-    // Two products commute exactly, three would not: points of a side have a zero among them.
-    double sum = 0;
-    for (int k = 0; k < 3; ++k) sum += corner.bary[k] != 0 ? corner.bary[k] * values[idx(k)] : 0;
-    return sum;
-  }
-
-  [[nodiscard]] Clipped clip(int face) const {
-    Clipped polygon;
-    polygon.face = face;
-    for (int k = 0; k < 3; ++k) {
-      polygon.corners.push_back({Vector3d::Unit(k), k, -1, {}, -1});
-      polygon.lines.push_back({k, -1, -1});
-    }
-    for (int k = 0; k < 3 && polygon.corners.size() >= 3; ++k) {
-      const int h = 3 * face + k;
-      const Line line = edge_line(h);
-      const double sign = source_.mesh.from(h) == line.a ? 1 : -1;
-      std::array<double, 3> values;
-      for (int c = 0; c < 3; ++c) values[idx(c)] = sign * value(line, c);
-      cut(polygon, line, values);
-    }
-    if (polygon.corners.size() < 3) polygon.corners.clear();
-    return polygon;
-  }
-
-  /// Sutherland & Hodgman 1974, by one line.
-  void cut(Clipped& polygon, const Line& line, const std::array<double, 3>& values) const {
-    Clipped kept;
-    kept.face = polygon.face;
-    const std::size_t n = polygon.corners.size();
-    std::vector<double> height;
-    height.reserve(n);
-    for (const Corner& corner : polygon.corners)
-      height.push_back(corner.line == line || has_end(line, corner) ? 0 : at(values, corner));
-    for (std::size_t i = 0; i < n; ++i) {
-      const std::size_t j = (i + 1) % n;
-      const bool in = height[i] >= 0, next_in = height[j] >= 0;
-      if (in) {
-        kept.corners.push_back(polygon.corners[i]);
-        // Behind a corner on the line the polygon may run on along it.
-        kept.lines.push_back(next_in ? polygon.lines[i] : line);
-      }
-      if ((height[i] > 0 && height[j] < 0) || (height[i] < 0 && height[j] > 0)) {
-        if (in) kept.lines.back() = polygon.lines[i];
-        kept.corners.push_back(meet(polygon.corners[i],
-                                    polygon.corners[j],
-                                    polygon.lines[i],
-                                    line,
-                                    values,
-                                    height[i] / (height[i] - height[j])));
-        kept.lines.push_back(in ? line : polygon.lines[i]);
-      }
-    }
-    polygon = std::move(kept);
-  }
-
-  /// Whether the corner is a source vertex at the line's end.
-  static bool has_end(const Line& line, const Corner& corner) {
-    return corner.source_vertex >= 0 &&
-           (corner.source_vertex == line.a || corner.source_vertex == line.b);
-  }
-
-  [[nodiscard]] Corner meet(const Corner& from,
-                            const Corner& to,
-                            const Line& along,
-                            const Line& line,
-                            const std::array<double, 3>& values,
-                            double t) const {
-    if (along.side >= 0) return {crossing(along.side, values), -1, along.side, line, -1};
-    // Two edges of the face: its corner between them.
-    const int shared = along.a == line.a || along.a == line.b ? along.a : along.b;
-    return {from.bary + t * (to.bary - from.bary), -1, -1, {}, shared};
-  }
-
-  const Embedded& source_;
-  const std::array<SurfacePoint, 3>& points_;
-  const std::array<int, 3>& vertices_;
-};
 
 /// A hash to a number in (0, 1): the same on every machine.
 double scattered(std::uint64_t seed) {
@@ -276,7 +67,7 @@ double scattered(std::uint64_t seed) {
 
 class Builder {
  public:
-  Builder(const Embedded& embedded,
+  Builder(const SphereSource& embedded,
           const TriangleMesh& source,
           const TriangleMesh& target,
           std::vector<SurfacePoint> points)
@@ -285,7 +76,7 @@ class Builder {
   PointMap build(double stretch, double slack) {
     part_coinciding_corners();
     const int faces = target_.face_count();
-    std::vector<std::vector<Clipped>> pieces(idx(faces));
+    std::vector<std::vector<ClippedFace>> pieces(idx(faces));
     for (int f = 0; f < faces; ++f) pieces[idx(f)] = pieces_of(f, stretch, slack);
     drop_unlike_sides(pieces);
     for (int f = 0; f < faces; ++f) add(f, pieces[idx(f)]);
@@ -304,13 +95,7 @@ class Builder {
     return true;
   }
 
-  [[nodiscard]] Vector3d on_sphere(int v) const {
-    const SurfacePoint& p = points_[idx(v)];
-    Vector3d y = Vector3d::Zero();
-    for (int k = 0; k < 3; ++k)
-      y += p.bary[k] * embedded_.X.row(embedded_.mesh.F(p.face, k)).transpose();
-    return y;
-  }
+  [[nodiscard]] Vector3d place_of(int v) const { return on_sphere(embedded_, points_[idx(v)]); }
 
   /// Corners of triangles that go back to one line or one place are moved by a ten-millionth of a
   /// face, inside it: cuts through such triangles would have no order.
@@ -319,9 +104,9 @@ class Builder {
     std::vector<bool> moves(points_.size(), false);
     for (int f = 0; f < target_.face_count(); ++f) {
       if (!has_points(f)) continue;
-      const Vector3d a = on_sphere(target_.F(f, 0)).normalized();
-      const Vector3d u = on_sphere(target_.F(f, 1)).normalized() - a;
-      const Vector3d v = on_sphere(target_.F(f, 2)).normalized() - a;
+      const Vector3d a = place_of(target_.F(f, 0)).normalized();
+      const Vector3d u = place_of(target_.F(f, 1)).normalized() - a;
+      const Vector3d v = place_of(target_.F(f, 2)).normalized() - a;
       const double longest = std::max({u.squaredNorm(), v.squaredNorm(), (u - v).squaredNorm()});
       if (u.cross(v).norm() > kFlat * longest) continue;
       for (int k = 0; k < 3; ++k) moves[idx(target_.F(f, k))] = true;
@@ -334,7 +119,9 @@ class Builder {
     }
   }
 
-  [[nodiscard]] SurfacePoint source_point(int f, const Clipped& polygon, const Corner& c) const {
+  [[nodiscard]] SurfacePoint source_point(int f,
+                                          const ClippedFace& polygon,
+                                          const ClipCorner& c) const {
     if (c.vertex >= 0) return points_[idx(target_.F(f, c.vertex))];
     SurfacePoint p{polygon.face, Vector3d::Zero()};
     if (c.source_vertex >= 0) {
@@ -345,7 +132,7 @@ class Builder {
     // On the edge ab: y = alpha X_a + beta X_b.
     Vector3d y = Vector3d::Zero();
     for (int k = 0; k < 3; ++k)
-      if (c.bary[k] != 0) y += c.bary[k] * on_sphere(target_.F(f, k));
+      if (c.bary[k] != 0) y += c.bary[k] * place_of(target_.F(f, k));
     const Vector3d a = embedded_.X.row(c.line.a).transpose();
     const Vector3d b = embedded_.X.row(c.line.b).transpose();
     const Vector3d n = a.cross(b);
@@ -360,7 +147,9 @@ class Builder {
     return p;
   }
 
-  [[nodiscard]] Vector3d source_place(int f, const Clipped& polygon, const Corner& c) const {
+  [[nodiscard]] Vector3d source_place(int f,
+                                      const ClippedFace& polygon,
+                                      const ClipCorner& c) const {
     const SurfacePoint p = source_point(f, polygon, c);
     Vector3d x = Vector3d::Zero();
     for (int k = 0; k < 3; ++k)
@@ -369,7 +158,7 @@ class Builder {
   }
 
   /// The pieces of a target triangle; none where it has no complete way back.
-  std::vector<Clipped> pieces_of(int f, double stretch, double slack) {
+  std::vector<ClippedFace> pieces_of(int f, double stretch, double slack) {
     if (!has_points(f)) return {};
     std::array<SurfacePoint, 3> points;
     std::array<int, 3> vertices;
@@ -385,12 +174,12 @@ class Builder {
       bound[idx(k)] = stretch * (target_.position(v) - target_.position(u)).norm() / unit + slack;
       // Straight through space is shorter than any way over the surface.
       torn = torn || (embedded_position(v) - embedded_position(u)).norm() > bound[idx(k)] ||
-             on_sphere(u).dot(on_sphere(v)) <= 0;
+             place_of(u).dot(place_of(v)) <= 0;
     }
-    std::vector<Clipped> pieces;
-    if (!torn) pieces = Clipper(embedded_, points, vertices).run();
+    std::vector<ClippedFace> pieces;
+    if (!torn) pieces = clip_to_source(embedded_, points, vertices);
     std::array<double, 3> length{0, 0, 0};
-    for (const Clipped& piece : pieces)
+    for (const ClippedFace& piece : pieces)
       for (std::size_t i = 0; i < piece.corners.size(); ++i)
         if (const int side = piece.lines[i].side; side >= 0)
           length[idx(side)] +=
@@ -402,19 +191,19 @@ class Builder {
       ++result_.statistics.torn_target_triangles;
       return {};
     }
-    return take_off_caps(pieces) ? pieces : std::vector<Clipped>{};
+    return take_off_caps(pieces) ? pieces : std::vector<ClippedFace>{};
   }
 
   /// Great circles bulge over the outline of an open source: what lies on a cap is taken to the
   /// edge of the source before it. False where a triangle does not just reach over the outline.
-  [[nodiscard]] bool take_off_caps(std::vector<Clipped>& pieces) const {
+  [[nodiscard]] bool take_off_caps(std::vector<ClippedFace>& pieces) const {
     constexpr double kMostBeyond = 0.5;  // ours: else most of the triangle lies over a hole
     double beyond = 0;
-    for (Clipped& piece : pieces) {
+    for (ClippedFace& piece : pieces) {
       if (piece.face < embedded_.face_count) continue;
       beyond += area_share(piece);
       const bool has_middle =
-          std::any_of(piece.corners.begin(), piece.corners.end(), [&](const Corner& c) {
+          std::any_of(piece.corners.begin(), piece.corners.end(), [&](const ClipCorner& c) {
             return c.source_vertex >= embedded_.vertex_count;
           });
       int before = -1, sides = 0;
@@ -435,17 +224,17 @@ class Builder {
   }
 
   /// The source edges that cross each side of a triangle.
-  [[nodiscard]] std::set<std::pair<int, int>> crossings(const std::vector<Clipped>& pieces,
+  [[nodiscard]] std::set<std::pair<int, int>> crossings(const std::vector<ClippedFace>& pieces,
                                                         int side) const {
     std::set<std::pair<int, int>> found;
-    for (const Clipped& piece : pieces)
-      for (const Corner& c : piece.corners)
+    for (const ClippedFace& piece : pieces)
+      for (const ClipCorner& c : piece.corners)
         if (c.side == side) found.emplace(c.line.a, c.line.b);
     return found;
   }
 
   /// Rounding can cut the two sides of an edge in different ways; there would be a crack.
-  void drop_unlike_sides(std::vector<std::vector<Clipped>>& pieces) const {
+  void drop_unlike_sides(std::vector<std::vector<ClippedFace>>& pieces) const {
     std::vector<int> drop;
     for (int h = 0; h < target_.halfedge_count(); ++h) {
       const int twin = target_.twin[idx(h)];
@@ -459,7 +248,7 @@ class Builder {
     for (const int f : drop) pieces[idx(f)].clear();
   }
 
-  int point_of(int f, const Clipped& polygon, const Corner& c) {
+  int point_of(int f, const ClippedFace& polygon, const ClipCorner& c) {
     std::tuple<int, int, int, int> key;
     if (c.vertex >= 0) {
       key = {0, target_.F(f, c.vertex), 0, 0};
@@ -478,10 +267,10 @@ class Builder {
     return entry->second;
   }
 
-  void add(int f, const std::vector<Clipped>& pieces) {
+  void add(int f, const std::vector<ClippedFace>& pieces) {
     SurfaceMap& map = result_.map;
-    for (const Clipped& piece : pieces) {
-      for (const Corner& c : piece.corners) map.corner.push_back(point_of(f, piece, c));
+    for (const ClippedFace& piece : pieces) {
+      for (const ClipCorner& c : piece.corners) map.corner.push_back(point_of(f, piece, c));
       map.polygon_begin.push_back(static_cast<int>(map.corner.size()));
       map.source_face.push_back(piece.face);
       map.target_face.push_back(f);
@@ -500,7 +289,7 @@ class Builder {
       const int begin = map.polygon_begin[idx(p)];
       double area = 0;
       for (int i = begin + 1; i + 1 < map.polygon_begin[idx(p + 1)]; ++i)
-        area += signed_area(bary(begin), bary(i), bary(i + 1));
+        area += signed_share(bary(begin), bary(i), bary(i + 1));
       share[idx(f)] += std::abs(area);
     }
     const Eigen::VectorXd areas = face_areas(source_);
@@ -532,7 +321,7 @@ class Builder {
           map.point_of_source_vertex[idx(source_.F(map.source[idx(q)].face, k))] = q;
   }
 
-  const Embedded& embedded_;
+  const SphereSource& embedded_;
   const TriangleMesh& source_;
   const TriangleMesh& target_;
   std::vector<SurfacePoint> points_;

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "tools/attributes.hpp"
+#include "tools/choose.hpp"
 #include "tools/version.hpp"
 #include "tools/viewer.hpp"
 #include "transfer/bake.hpp"
@@ -63,23 +64,7 @@ std::string parse_views(const std::string& text, RenderArguments& arguments) {
   return arguments.views.empty() ? "--views: none is named" : "";
 }
 
-/// Sets `value` to what the word stands for; otherwise says what it may be.
-template <class T>
-std::string choose(const std::string& word,
-                   const std::vector<std::pair<std::string, T>>& choices,
-                   const char* option,
-                   T& value) {
-  std::string names;
-  for (const auto& [name, choice] : choices) {
-    if (word == name) {
-      value = choice;
-      return "";
-    }
-    names += (names.empty() ? "" : ", ") + name;
-  }
-  return fmt::format("{}: '{}' is none of {}", option, word, names);
-}
-
+/// Adds an option whose text goes to `parse`, which says what is wrong with it, or "".
 template <class Parse>
 CLI::Option* add_parsed(
     CLI::App& command, const char* name, const char* what, const char* type, Parse parse) {
