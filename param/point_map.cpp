@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <tuple>
@@ -132,7 +133,7 @@ class Builder {
     // On the edge ab: y = alpha X_a + beta X_b.
     Vector3d y = Vector3d::Zero();
     for (int k = 0; k < 3; ++k)
-      if (c.bary[k] != 0) y += c.bary[k] * place_of(target_.F(f, k));
+      if (c.bary[k] != 0) y += c.bary[k] * on_sphere(embedded_, corners_[idx(f)][idx(k)]);
     const Vector3d a = embedded_.X.row(c.line.a).transpose();
     const Vector3d b = embedded_.X.row(c.line.b).transpose();
     const Vector3d n = a.cross(b);
@@ -157,6 +158,45 @@ class Builder {
     return x;
   }
 
+  /// The places of a triangle's corners; those that lie on a cut through a handle are on both its
+  /// banks, and are taken in a face that holds all three, or where they are nearest to each other.
+  [[nodiscard]] std::array<SurfacePoint, 3> on_one_bank(int f) const {
+    const auto faces = [&](int k) { return faces_at(source_, points_[idx(target_.F(f, k))]); };
+    const auto in = [&](int k, int face) {
+      return in_face(source_, points_[idx(target_.F(f, k))], face);
+    };
+    const std::vector<int> second = faces(1), third = faces(2);
+    for (const int face : faces(0))
+      if (std::find(second.begin(), second.end(), face) != second.end() &&
+          std::find(third.begin(), third.end(), face) != third.end())
+        return {in(0, face), in(1, face), in(2, face)};
+    std::array<std::vector<SurfacePoint>, 3> choices;
+    for (int k = 0; k < 3; ++k) {
+      for (const int face : faces(k)) {
+        const SurfacePoint q = in(k, face);
+        const auto same = [&](const SurfacePoint& other) {
+          return (on_sphere(embedded_, q) - on_sphere(embedded_, other)).isZero(1e-12);
+        };
+        if (std::none_of(choices[idx(k)].begin(), choices[idx(k)].end(), same))
+          choices[idx(k)].push_back(q);
+      }
+    }
+    std::array<SurfacePoint, 3> best;
+    double least = std::numeric_limits<double>::infinity();
+    for (const SurfacePoint& a : choices[0])
+      for (const SurfacePoint& b : choices[1])
+        for (const SurfacePoint& c : choices[2]) {
+          const Vector3d x = on_sphere(embedded_, a).normalized();
+          const Vector3d y = on_sphere(embedded_, b).normalized();
+          const Vector3d z = on_sphere(embedded_, c).normalized();
+          const double spread = (x - y).norm() + (y - z).norm() + (z - x).norm();
+          if (spread >= least) continue;
+          least = spread;
+          best = {a, b, c};
+        }
+    return best;
+  }
+
   /// The pieces of a target triangle; none where it has no complete way back.
   std::vector<ClippedFace> pieces_of(int f, double stretch, double slack) {
     if (!has_points(f)) return {};
@@ -164,17 +204,18 @@ class Builder {
     std::array<int, 3> vertices;
     std::array<double, 3> bound;
     const double unit = std::sqrt(total_area_);
+    constexpr double kOpposite = -0.98;  // a cosine: between opposite points there is no one way
     bool torn = false;
-    for (int k = 0; k < 3; ++k) {
-      vertices[idx(k)] = target_.F(f, k);
-      points[idx(k)] = points_[idx(vertices[idx(k)])];
-    }
+    for (int k = 0; k < 3; ++k) vertices[idx(k)] = target_.F(f, k);
+    points = corners_[idx(f)] = on_one_bank(f);
     for (int k = 0; k < 3; ++k) {
       const int u = vertices[idx(k)], v = vertices[idx((k + 1) % 3)];
       bound[idx(k)] = stretch * (target_.position(v) - target_.position(u)).norm() / unit + slack;
       // Straight through space is shorter than any way over the surface.
       torn = torn || (embedded_position(v) - embedded_position(u)).norm() > bound[idx(k)] ||
-             place_of(u).dot(place_of(v)) <= 0;
+             on_sphere(embedded_, points[idx(k)])
+                     .normalized()
+                     .dot(on_sphere(embedded_, points[idx((k + 1) % 3)]).normalized()) < kOpposite;
     }
     std::vector<ClippedFace> pieces;
     if (!torn) pieces = clip_to_source(embedded_, points, vertices);
@@ -284,7 +325,7 @@ class Builder {
     for (int p = 0; p < map.polygon_count(); ++p) {
       const int f = map.source_face[idx(p)];
       const auto bary = [&](int i) {
-        return in_face(embedded_.mesh, map.source[idx(map.corner[idx(i)])], f).bary;
+        return in_face(source_, map.source[idx(map.corner[idx(i)])], f).bary;
       };
       const int begin = map.polygon_begin[idx(p)];
       double area = 0;
@@ -325,6 +366,9 @@ class Builder {
   const TriangleMesh& source_;
   const TriangleMesh& target_;
   std::vector<SurfacePoint> points_;
+  /// Per target face: its corners' points, on one bank of each cut.
+  std::vector<std::array<SurfacePoint, 3>> corners_ =
+      std::vector<std::array<SurfacePoint, 3>>(idx(target_.face_count()));
   double total_area_ = total_area(target_);
   PointMap result_;
   std::map<std::tuple<int, int, int, int>, int> number_;
