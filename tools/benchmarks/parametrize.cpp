@@ -1,13 +1,13 @@
 // Times the patch parametrization on square patches with bumps and prints CSV: one line per size
-// and boundary, the median of the runs
-// in CPU seconds.
+// and boundary, the median of the runs in CPU seconds.
+#include "param/parametrize.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <vector>
 
-#include "param/parametrize.hpp"
 #include "param/tutte.hpp"
 
 namespace {
