@@ -83,16 +83,17 @@ Result<ExitCode> run_paper_match(const MatchArguments& arguments) {
 
 Result<ExitCode> run(const MatchArguments& arguments) {
   if (arguments.method == MatchChoice::kPaper) return run_paper_match(arguments);
-  Progress progress(arguments.pair.common.quiet, kMapStages);
+  Progress progress(arguments.pair.common.quiet, kMapStages + 1);
   const Result<PairRun> run = run_pair(arguments.pair.files, progress);
   if (!run) return tl::unexpected(run.error());
-  const Matching matching = judged_matching(*run);
+  const Result<Matching> matching = judged_matching(*run, progress);
+  if (!matching) return tl::unexpected(matching.error());
   RunReport report = pair_report(arguments.pair, *run);
   report.command = "match";
   report.options = {{"method", "default"}};
-  report.quality["matches"] = static_cast<double>(matching.matches.size());
+  report.quality["matches"] = static_cast<double>(matching->matches.size());
   return finish(
-      {{arguments.output, matching_text(matching, run->source.prepared, run->target.prepared)}},
+      {{arguments.output, matching_text(*matching, run->source.prepared, run->target.prepared)}},
       std::move(report),
       arguments.pair,
       *run,

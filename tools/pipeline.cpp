@@ -6,9 +6,12 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
+#include <tuple>
 
 #include "core/cut_handles.hpp"
 #include "param/map_quality.hpp"
+#include "param/node_matching.hpp"
 #include "tools/overlay_text.hpp"
 #include "tools/point_map_text.hpp"
 #include "tools/source_texture.hpp"
@@ -17,6 +20,9 @@ namespace crosspatch {
 namespace {
 
 using std::size_t;
+
+/// Least persistence of the critical points that `match` names, on log ADF.
+constexpr double kDetail = 0.005;
 
 /// What is said about an input when it has been read: its size and what had to be repaired.
 std::string read_summary(const InputMesh& input) {
@@ -127,6 +133,14 @@ Result<MatchingShape> paper_shape(const TriangleMesh& mesh) {
       [&](const ShapeFeatures& features) { return matching_shape(mesh, features); });
 }
 
+/// The critical points that are matched over a map, finer than the tips it was found by.
+Result<MorseSmaleComplex> detailed_complex(const TriangleMesh& mesh) {
+  return compute_spectrum(mesh).and_then([&](const Spectrum& spectrum) {
+    return morse_smale_complex(
+        mesh, auto_diffusion(spectrum), {.threshold = kDetail, .scale = FieldScale::kLog});
+  });
+}
+
 }  // namespace
 
 Result<std::vector<Landmark>> mesh_landmarks(const std::vector<FileLandmark>& landmarks,
@@ -214,18 +228,38 @@ Result<Matching> paper_matching(const PairRun& run, Progress& progress) {
   return matching;
 }
 
-Matching judged_matching(const PairRun& run) {
+Result<Matching> judged_matching(const PairRun& run, Progress& progress) {
+  progress.begin("match");
+  const TriangleMesh &source = run.source.prepared.mesh, &target = run.target.prepared.mesh;
+  const Result<MorseSmaleComplex> a = detailed_complex(source);
+  if (!a) return tl::unexpected(a.error());
+  const Result<MorseSmaleComplex> b = detailed_complex(target);
+  if (!b) return tl::unexpected(b.error());
   Matching matching;
+  std::set<int> given_source, given_target;
+  for (const Landmark& landmark : run.landmarks) {
+    matching.matches.push_back(
+        {NodeKind::kMaximum, landmark.source_vertex, landmark.target_vertex, 1});
+    given_source.insert(landmark.source_vertex);
+    given_target.insert(landmark.target_vertex);
+  }
   const double confidence = std::clamp(run.matched.margin / kSafeMargin, 0.0, 1.0);
-  for (const Landmark& landmark : run.matched.ranking.front().landmarks)
-    matching.matches.push_back({.kind = NodeKind::kMaximum,
-                                .source_vertex = landmark.source_vertex,
-                                .target_vertex = landmark.target_vertex,
-                                .confidence = landmark.pinned ? 1 : confidence});
-  std::sort(matching.matches.begin(), matching.matches.end(), [](const Match& a, const Match& b) {
-    return a.confidence != b.confidence ? a.confidence > b.confidence
-                                        : a.source_vertex < b.source_vertex;
+  for (Match match : match_nodes(source, target, *a, *b, run.matched.result.map).matches) {
+    if (given_source.contains(match.source_vertex) || given_target.contains(match.target_vertex))
+      continue;
+    match.confidence *= confidence;
+    matching.matches.push_back(match);
+  }
+  if (matching.matches.empty())
+    return fail(ErrorCode::kNoCorrespondence,
+                fmt::format("match: the map brings none of {} and {} critical points together",
+                            a->nodes.size(),
+                            b->nodes.size()));
+  std::sort(matching.matches.begin(), matching.matches.end(), [](const Match& x, const Match& y) {
+    return std::tuple(-x.confidence, x.source_vertex, x.kind) <
+           std::tuple(-y.confidence, y.source_vertex, y.kind);
   });
+  progress.end(fmt::format("{} matches", matching.matches.size()));
   return matching;
 }
 

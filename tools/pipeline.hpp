@@ -41,9 +41,10 @@ Result<PairRun> run_pair(const PairFiles& files, Progress& progress);
 /// The paper's matching of a pair that has been read: its features matched by spectral matching.
 Result<Matching> paper_matching(const PairRun& run, Progress& progress);
 
-/// The winner among the candidates that a finished map was chosen from, as a matching. The
-/// confidence of found pairs is the margin over kSafeMargin, at most 1; that of landmarks is 1.
-Matching judged_matching(const PairRun& run);
+/// The critical points of both surfaces that the map of a finished run brings together, after the
+/// landmarks that were given. Their confidence is that of match_nodes times the margin over
+/// kSafeMargin, at most 1; that of landmarks is 1. kNoCorrespondence if there are none.
+Result<Matching> judged_matching(const PairRun& run, Progress& progress);
 
 /// Margin of the finals from which on the winner's mean error was below 10 % of the square root of
 /// the area in 149 of 157 pairs of FAUST, TOSCA, SMAL and SHREC'07, of 200 that were tried, and

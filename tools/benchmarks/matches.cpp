@@ -46,7 +46,9 @@ Result<Matching> matching_of(const DataPair& pair, const std::string& method) {
   files.source = pair.source;
   files.target = pair.target;
   if (method == "default")
-    return run_pair(files, progress).map([](const PairRun& run) { return judged_matching(run); });
+    return run_pair(files, progress).and_then([&](const PairRun& run) {
+      return judged_matching(run, progress);
+    });
   return read_pair(files, progress).and_then([&](const PairRun& run) {
     return paper_matching(run, progress);
   });
