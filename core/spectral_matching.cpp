@@ -15,12 +15,6 @@
 namespace crosspatch {
 namespace {
 
-/// A possible assignment a = {source node, target node} with H(a).
-struct Possible {
-  int source, target;
-  double score;
-};
-
 Eigen::MatrixXd diffusion_distances(const Spectrum& spectrum,
                                     const std::vector<int>& vertices,
                                     double time) {
@@ -43,8 +37,8 @@ double distance_score(double d1, double d2, double sigma) {
 
 double pair_score(const MatchingShape& source,
                   const MatchingShape& target,
-                  const Possible& a,
-                  const Possible& b,
+                  const NodePair& a,
+                  const NodePair& b,
                   const SpectralMatchingOptions& options) {
   // Assignments that share a node exclude each other.
   if (a.source == b.source || a.target == b.target) return 0;
@@ -62,24 +56,8 @@ double pair_score(const MatchingShape& source,
   return source.adjacency(a.source, b.source) * target.adjacency(a.target, b.target);
 }
 
-/// M of Sec. 5.2, weighted as in Eq. (3).
-Eigen::MatrixXd score_matrix(const MatchingShape& source,
-                             const MatchingShape& target,
-                             const std::vector<Possible>& possible,
-                             const SpectralMatchingOptions& options) {
-  const auto n = static_cast<Eigen::Index>(possible.size());
-  Eigen::MatrixXd M(n, n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    M(i, i) = options.alpha * possible[idx(i)].score;
-    for (Eigen::Index j = 0; j < i; ++j)
-      M(i, j) = M(j, i) = (1 - options.alpha) *
-                          pair_score(source, target, possible[idx(i)], possible[idx(j)], options);
-  }
-  return M;
-}
-
 /// Fills `partner` from the highest score down, skipping nodes already taken.
-std::vector<int> select_greedily(const std::vector<Possible>& possible,
+std::vector<int> select_greedily(const std::vector<NodePair>& possible,
                                  const Eigen::VectorXd& x,
                                  int source_nodes,
                                  int target_nodes) {
@@ -92,7 +70,7 @@ std::vector<int> select_greedily(const std::vector<Possible>& possible,
   std::vector<bool> taken(idx(target_nodes), false);
   constexpr double kZero = 1e-9;  // of the largest entry: not reached by the power iteration
   for (const size_t i : order) {
-    const Possible& a = possible[i];
+    const NodePair& a = possible[i];
     if (x[static_cast<Eigen::Index>(i)] < kZero) break;
     if (partner[idx(a.source)] >= 0 || taken[idx(a.target)]) continue;
     partner[idx(a.source)] = a.target;
@@ -111,7 +89,7 @@ Selection match_spectrally(const MatchingShape& source,
                            const MatchingShape& target,
                            const Eigen::MatrixXd& H,
                            const SpectralMatchingOptions& options) {
-  std::vector<Possible> possible;
+  std::vector<NodePair> possible;
   for (int i = 0; i < H.rows(); ++i)
     for (int j = 0; j < H.cols(); ++j)
       if (H(i, j) > 0 && H(i, j) >= options.epsilon) possible.push_back({i, j, H(i, j)});
@@ -193,6 +171,22 @@ Eigen::MatrixXd node_scores(const MatchingShape& source,
       H(i, j) = same ? 1 - std::sqrt(R > 0 ? difference(i, j) / R : 0) : 0;
     }
   return H;
+}
+
+Eigen::MatrixXd score_matrix(const MatchingShape& source,
+                             const MatchingShape& target,
+                             const std::vector<NodePair>& assignments,
+                             const SpectralMatchingOptions& options) {
+  const auto n = static_cast<Eigen::Index>(assignments.size());
+  Eigen::MatrixXd M(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    M(i, i) = options.alpha * assignments[idx(i)].score;
+    for (Eigen::Index j = 0; j < i; ++j)
+      M(i, j) = M(j, i) =
+          (1 - options.alpha) *
+          pair_score(source, target, assignments[idx(i)], assignments[idx(j)], options);
+  }
+  return M;
 }
 
 Eigen::VectorXd principal_eigenvector(const Eigen::MatrixXd& M) {

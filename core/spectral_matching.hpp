@@ -61,6 +61,20 @@ Eigen::MatrixXd node_scores(const MatchingShape& source,
                             const MatchingShape& target,
                             NodeSignature signature);
 
+/// A possible assignment of two nodes, with H(a).
+struct NodePair {
+  int source = -1;
+  int target = -1;
+  double score = 0;
+};
+
+/// The matrix M of the paper (Sec. 5.2) over the given assignments: alpha H(a) on the diagonal,
+/// (1 - alpha) H(a, b) elsewhere, 0 where two assignments share a node.
+Eigen::MatrixXd score_matrix(const MatchingShape& source,
+                             const MatchingShape& target,
+                             const std::vector<NodePair>& assignments,
+                             const SpectralMatchingOptions& options = {});
+
 /// The principal eigenvector of a symmetric non-negative matrix, by power iteration from the vector
 /// of ones: non-negative, largest entry 1.
 Eigen::VectorXd principal_eigenvector(const Eigen::MatrixXd& M);
