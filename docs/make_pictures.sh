@@ -20,3 +20,8 @@ cp "$scratch/page_m.png" docs/patches.png
 "$program" transfer $lira $tola --texture distortion --output "$scratch/distortion.glb" --quiet
 "$program" render "$scratch/distortion.glb" --views side,quarter --size 900x320 \
   --output docs/distortion.png --quiet
+"$(dirname "$program")/tools/benchmarks/benchmark_paper" --figure 10 --data "" --output "$scratch" >/dev/null
+cp "$scratch/figure_10.png" docs/paper_constraints.png
+"$(dirname "$program")/tools/benchmarks/benchmark_paper" --figure 11 --data "" --output "$scratch" >/dev/null
+cp "$scratch/figure_11_connectivity.png" docs/paper_matrices_connectivity.png
+cp "$scratch/figure_11_geodesic.png" docs/paper_matrices_geodesic.png

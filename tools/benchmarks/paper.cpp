@@ -1,31 +1,19 @@
 // The experiments of the paper, figure by figure: CSV on standard output and, with --output, a
 // picture each. Source: Feng et al. 2013, Sec. 6.
+#include "tools/benchmarks/paper.hpp"
+
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
 #include <CLI/CLI.hpp>
-#include <cmath>
-#include <filesystem>
 #include <functional>
 #include <map>
 
-#include "core/geodesics.hpp"
-#include "core/index.hpp"
 #include "tools/benchmarks/deformations.hpp"
-#include "tools/benchmarks/picture.hpp"
 #include "tools/input.hpp"
 
 namespace crosspatch {
 namespace {
-
-struct Arguments {
-  int figure = 8;
-  std::string data = default_data_folder().string();
-  std::string samples = "samples";
-  std::string output;  ///< folder for pictures; empty = none
-  int limit = 4;
-  int threads = 1;
-};
 
 /// Two surfaces to match, and what is known about them.
 struct Couple {
@@ -34,19 +22,6 @@ struct Couple {
   SparseShape source, target;
   Truth truth;  ///< without pairs: unknown
 };
-
-constexpr double kNear = 0.1, kFar = 0.25;
-
-std::string share(const JudgedMatching& judged, double distance) {
-  const double value = judged.share_within(distance);
-  return std::isnan(value) ? "" : fmt::format("{:.3f}", value);
-}
-
-/// The columns that describe a matching: matched,within_10,within_25.
-std::string columns(const JudgedMatching& judged) {
-  return fmt::format(
-      "{},{},{}", judged.matching.matches.size(), share(judged, kNear), share(judged, kFar));
-}
 
 Result<Couple> read_couple(const DataPair& pair) {
   return read_sparse_shape(pair.source).and_then([&](SparseShape source) -> Result<Couple> {
@@ -63,7 +38,7 @@ Result<Couple> read_couple(const DataPair& pair) {
 }
 
 /// The sample creature and the same deformed: the one couple that needs no data set.
-Result<Couple> deformed_couple(const Arguments& arguments,
+Result<Couple> deformed_couple(const PaperArguments& arguments,
                                Deformation deformation,
                                double strength) {
   return read_sparse_shape(arguments.samples + "/lira.obj")
@@ -78,7 +53,8 @@ Result<Couple> deformed_couple(const Arguments& arguments,
 }
 
 /// Pairs of the data set, a few of each set; none where there is no data set.
-std::vector<DataPair> some_pairs(const Arguments& arguments, const std::vector<std::string>& sets) {
+std::vector<DataPair> some_pairs(const PaperArguments& arguments,
+                                 const std::vector<std::string>& sets) {
   std::vector<DataPair> chosen;
   const auto pairs = read_data_pairs(arguments.data);
   if (!pairs) {
@@ -101,21 +77,8 @@ Status for_each_couple(const std::vector<DataPair>& pairs,
   return {};
 }
 
-/// Writes the sheet of a figure, where pictures are wanted.
-Status finish_sheet(const Arguments& arguments, const PictureSheet& sheet, int columns_wide) {
-  if (arguments.output.empty()) return {};
-  return write_sheet(
-      sheet, columns_wide, fmt::format("{}/figure_{}.png", arguments.output, arguments.figure));
-}
-
-/// How a figure varies the matcher.
-struct Variant {
-  std::string name;
-  SpectralMatchingOptions options;
-};
-
 /// Every couple by every variant: CSV rows "group,pair,variant,matched,within_10,within_25".
-Status compare_variants(const Arguments& arguments,
+Status compare_variants(const PaperArguments& arguments,
                         const std::vector<Variant>& variants,
                         const std::vector<Couple>& made,
                         const std::vector<DataPair>& pairs) {
@@ -141,7 +104,7 @@ Status compare_variants(const Arguments& arguments,
 
 /// The sample deformed in each of the given ways.
 Result<std::vector<Couple>> deformed_couples(
-    const Arguments& arguments, const std::vector<std::pair<Deformation, double>>& ways) {
+    const PaperArguments& arguments, const std::vector<std::pair<Deformation, double>>& ways) {
   std::vector<Couple> couples;
   for (const auto& [deformation, strength] : ways) {
     Result<Couple> couple = deformed_couple(arguments, deformation, strength);
@@ -154,7 +117,7 @@ Result<std::vector<Couple>> deformed_couples(
 const std::vector<std::string> kFallingIsometry{"faust5k", "tosca5k", "s07_fourleg", "toscaNI5k"};
 
 /// Fig. 8: the balance alpha of Eq. (3).
-Status figure_8(const Arguments& arguments) {
+Status figure_8(const PaperArguments& arguments) {
   std::vector<Variant> variants;
   for (const double alpha : {0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.97, 0.999})
     variants.push_back({fmt::format("alpha={}", alpha), {.alpha = alpha}});
@@ -166,7 +129,7 @@ Status figure_8(const Arguments& arguments) {
 }
 
 /// Fig. 9: the heat kernel signature alone and with the graph; the auto diffusion function beside.
-Status figure_9(const Arguments& arguments) {
+Status figure_9(const PaperArguments& arguments) {
   const std::vector<Variant> variants{
       {"ADF alone", {.method = MatchMethod::kHungarian}},
       {"ADF + graph", {}},
@@ -179,7 +142,7 @@ Status figure_9(const Arguments& arguments) {
 }
 
 /// Fig. 10: arcs against geodesic and diffusion distances, on pairs of falling isometry.
-Status figure_10(const Arguments& arguments) {
+Status figure_10(const PaperArguments& arguments) {
   const std::vector<Variant> variants{{"geodesic", {.constraint = PairConstraint::kGeodesic}},
                                       {"diffusion", {.constraint = PairConstraint::kDiffusion}},
                                       {"connectivity", {}}};
@@ -191,111 +154,9 @@ Status figure_10(const Arguments& arguments) {
       });
 }
 
-/// The node of `shape` of the kind of node `i` of `null` nearest to its place (vertex numbers are
-/// shared), or -1 if none is within 0.1 sqrt(area).
-int same_node(const SparseShape& null, const SparseShape& shape, int i) {
-  const MorseNode& node = null.matching.graph.node(i);
-  const Eigen::VectorXd distance = geodesic_distance_to_set(shape.mesh(), {node.vertex});
-  int nearest = -1;
-  double least = kNear * std::sqrt(total_area(shape.mesh()));
-  for (int j = 0; j < shape.matching.graph.node_count(); ++j) {
-    const MorseNode& other = shape.matching.graph.node(j);
-    if (other.kind != node.kind || distance[other.vertex] > least) continue;
-    least = distance[other.vertex];
-    nearest = j;
-  }
-  return nearest;
-}
-
-/// The matrix M between `null` and `shape` over the given assignments, whose scores are filled in.
-Eigen::MatrixXd true_matrix(const SparseShape& null,
-                            const SparseShape& shape,
-                            const std::vector<NodePair>& pairs,
-                            const SpectralMatchingOptions& options) {
-  const Eigen::MatrixXd H = node_scores(null.matching, shape.matching, options.signature);
-  std::vector<NodePair> scored = pairs;
-  for (NodePair& pair : scored) pair.score = H(pair.source, pair.target);
-  return score_matrix(null.matching, shape.matching, scored, options);
-}
-
-double mean_off_diagonal(const Eigen::MatrixXd& M) {
-  const double n = static_cast<double>(M.rows());
-  return n > 1 ? (M.cwiseAbs().sum() - M.diagonal().cwiseAbs().sum()) / (n * (n - 1)) : 0;
-}
-
-/// Fig. 11: one shape against a sequence that departs from it, and what becomes of the matrix M.
-/// The matrix is taken over the true partners of those nodes that all steps have.
-Status figure_11(const Arguments& arguments) {
-  constexpr int kSteps = 6;
-  const auto null = read_sparse_shape(arguments.samples + "/lira.obj");
-  if (!null) return tl::unexpected(null.error());
-  std::vector<SparseShape> sequence;
-  for (int step = 0; step <= kSteps; ++step) {
-    auto shape = make_sparse_shape(fmt::format("step {}", step),
-                                   morph(null->mesh(), static_cast<double>(step) / kSteps));
-    if (!shape) return tl::unexpected(shape.error());
-    sequence.push_back(std::move(*shape));
-  }
-  std::vector<std::vector<NodePair>> pairs(sequence.size());
-  for (int i = 0; i < null->matching.graph.node_count(); ++i) {
-    std::vector<NodePair> partners;
-    for (const SparseShape& shape : sequence)
-      partners.push_back({i, same_node(*null, shape, i), 0});
-    if (std::all_of(
-            partners.begin(), partners.end(), [](const NodePair& p) { return p.target >= 0; }))
-      for (size_t step = 0; step < sequence.size(); ++step) pairs[step].push_back(partners[step]);
-  }
-  const std::vector<Variant> variants{
-      {"connectivity", {.order_correction = false}},
-      {"connectivity + order", {}},
-      {"geodesic", {.constraint = PairConstraint::kGeodesic, .order_correction = false}},
-      {"geodesic + order", {.constraint = PairConstraint::kGeodesic}}};
-  fmt::print(
-      "variant,step,nodes,kept_nodes,matched,within_10,within_25,off_diagonal_mean,"
-      "off_diagonal_change,diagonal_change\n");
-  const Truth truth = identity_truth(null->mesh().vertex_count());
-  PictureSheet sheet;
-  for (const Variant& variant : variants) {
-    const Eigen::MatrixXd first = true_matrix(*null, sequence[0], pairs[0], variant.options);
-    Eigen::MatrixXd low = first, high = first;
-    for (size_t step = 0; step < sequence.size(); ++step) {
-      const SparseShape& shape = sequence[step];
-      const JudgedMatching judged = match_sparsely(*null, shape, truth, variant.options);
-      const Eigen::MatrixXd M = true_matrix(*null, shape, pairs[step], variant.options);
-      low = low.cwiseMin(M);
-      high = high.cwiseMax(M);
-      const Eigen::MatrixXd change = M - first;
-      fmt::print("{},{},{},{},{},{:.4f},{:.4f},{:.4f}\n",
-                 variant.name,
-                 step,
-                 shape.matching.graph.node_count(),
-                 pairs[step].size(),
-                 columns(judged),
-                 mean_off_diagonal(M),
-                 mean_off_diagonal(change),
-                 change.diagonal().cwiseAbs().mean());
-      if (arguments.output.empty()) continue;
-      add_matching(sheet, fmt::format("{} {}", variant.name, step), *null, shape, judged);
-      constexpr int kSide = 240;
-      if (!variant.options.order_correction)
-        if (const Status written = write_picture(
-                draw_matrix(M, kSide, kSide),
-                fmt::format("{}/figure_11_{}_{}.png", arguments.output, variant.name, step));
-            !written)
-          return written;
-    }
-    fmt::print("{},range,,{},,,,,{:.4f},{:.4f}\n",
-               variant.name,
-               pairs[0].size(),
-               mean_off_diagonal(high - low),
-               (high - low).diagonal().mean());
-  }
-  return finish_sheet(arguments, sheet, static_cast<int>(sequence.size()));
-}
-
 /// Fig. 12: the human models of SHREC'07.
-Status figure_12(const Arguments& arguments) {
-  Arguments all = arguments;
+Status figure_12(const PaperArguments& arguments) {
+  PaperArguments all = arguments;
   all.limit = 0;
   std::vector<DataPair> pairs;
   for (const DataPair& pair : some_pairs(all, {"s07_human"}))
@@ -309,7 +170,7 @@ Status figure_12(const Arguments& arguments) {
 }
 
 /// Fig. 13: a null shape and what affine and other transformations make of it.
-Status figure_13(const Arguments& arguments) {
+Status figure_13(const PaperArguments& arguments) {
   std::vector<SparseShape> nulls;
   std::vector<std::string> files{arguments.samples + "/lira.obj"};
   for (const DataPair& pair : some_pairs(arguments, {"faust5k"}))
@@ -350,10 +211,10 @@ Status figure_13(const Arguments& arguments) {
 }
 
 /// The pairs of the sets for which the genus is, or is not, that of both surfaces.
-std::vector<DataPair> pairs_by_genus(const Arguments& arguments,
+std::vector<DataPair> pairs_by_genus(const PaperArguments& arguments,
                                      const std::vector<std::string>& sets,
                                      const std::function<bool(int, int)>& wanted) {
-  Arguments all = arguments;
+  PaperArguments all = arguments;
   all.limit = 0;
   std::vector<DataPair> chosen;
   for (const DataPair& pair : some_pairs(all, sets)) {
@@ -364,7 +225,7 @@ std::vector<DataPair> pairs_by_genus(const Arguments& arguments,
 }
 
 /// Fig. 14: surfaces of the same genus, not 0.
-Status figure_14(const Arguments& arguments) {
+Status figure_14(const PaperArguments& arguments) {
   return compare_variants(arguments,
                           {{"epsilon=0.6", {}}, {"epsilon=0.2", {.epsilon = 0.2}}},
                           {},
@@ -374,7 +235,7 @@ Status figure_14(const Arguments& arguments) {
 }
 
 /// Fig. 1: surfaces of different genus.
-Status figure_1(const Arguments& arguments) {
+Status figure_1(const PaperArguments& arguments) {
   return compare_variants(
       arguments,
       {{"epsilon=0.6", {}}, {"epsilon=0.2", {.epsilon = 0.2}}},
@@ -383,20 +244,20 @@ Status figure_1(const Arguments& arguments) {
           arguments, {"s07_cup", "s07_chair", "s07_human"}, [](int a, int b) { return a != b; }));
 }
 
-const std::map<int, Status (*)(const Arguments&)> kFigures{{1, figure_1},
-                                                           {8, figure_8},
-                                                           {9, figure_9},
-                                                           {10, figure_10},
-                                                           {11, figure_11},
-                                                           {12, figure_12},
-                                                           {13, figure_13},
-                                                           {14, figure_14}};
+const std::map<int, Status (*)(const PaperArguments&)> kFigures{{1, figure_1},
+                                                                {8, figure_8},
+                                                                {9, figure_9},
+                                                                {10, figure_10},
+                                                                {11, figure_11},
+                                                                {12, figure_12},
+                                                                {13, figure_13},
+                                                                {14, figure_14}};
 
 }  // namespace
 }  // namespace crosspatch
 
 int main(int argc, char** argv) {
-  crosspatch::Arguments arguments;
+  crosspatch::PaperArguments arguments;
   CLI::App app("The paper's experiments; CSV on standard output");
   app.add_option("--figure", arguments.figure, "1, 8, 9, 10, 11, 12, 13 or 14")
       ->required()
