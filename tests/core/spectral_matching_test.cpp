@@ -47,6 +47,18 @@ TEST(SpectralMatching, PrincipalEigenvectorSolvesItsEquation) {
   EXPECT_GT(lambda, 2);
 }
 
+TEST(SpectralMatching, ScoreMatrixWeighsNodesAndPairsAndExcludesRivals) {
+  const MatchingShape& shape = creature(1);
+  const std::vector<NodePair> pairs{{0, 0, 1}, {1, 1, 0.5}, {0, 1, 0.25}};
+  const Eigen::MatrixXd M =
+      score_matrix(shape, shape, pairs, {.constraint = PairConstraint::kGeodesic, .alpha = 0.2});
+  EXPECT_EQ(M, M.transpose());
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(M(i, i), 0.2 * pairs[static_cast<size_t>(i)].score);
+  EXPECT_EQ(M(0, 1), 0.8);  // Eq. (4) of equal distances is 1
+  EXPECT_EQ(M(0, 2), 0);    // one source node
+  EXPECT_EQ(M(1, 2), 0);    // one target node
+}
+
 TEST(SpectralMatching, NodeScoresAreOneOnTheDiagonalAndZeroAcrossKinds) {
   const MatchingShape& shape = creature(1);
   for (const auto signature : {NodeSignature::kAutoDiffusion, NodeSignature::kHeatKernel}) {
