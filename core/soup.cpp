@@ -69,6 +69,16 @@ Status validate(const PolygonSoup& soup) {
   return check_attributes(soup);
 }
 
+std::vector<int> polygon_of_corner(const PolygonSoup& soup) {
+  std::vector<int> polygon;
+  polygon.reserve(soup.corner_vertex.size());
+  for (int p = 0; p < soup.polygon_count(); ++p) {
+    const auto begin = soup.polygon_begin.begin() + p;
+    polygon.insert(polygon.end(), static_cast<std::size_t>(begin[1] - begin[0]), p);
+  }
+  return polygon;
+}
+
 std::vector<int> fan_triangle_corners(const PolygonSoup& soup) {
   std::vector<int> corners;
   corners.reserve(soup.corner_vertex.size());

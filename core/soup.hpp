@@ -85,6 +85,9 @@ struct PolygonSoup {
 /// every attribute has one entry a corner (or a polygon). kBadInput names the first that is not.
 Status validate(const PolygonSoup& soup);
 
+/// Per corner: the polygon that it belongs to.
+std::vector<int> polygon_of_corner(const PolygonSoup& soup);
+
 /// The corners of all fan triangles, three each, in the numbering described at PolygonSoup.
 std::vector<int> fan_triangle_corners(const PolygonSoup& soup);
 

@@ -1,5 +1,6 @@
 #include "tools/display_mesh.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include "core/index.hpp"
@@ -34,7 +35,8 @@ void locate_corners(const TriangleMesh& mesh, DisplayMesh& display) {
 
 }  // namespace
 
-Result<DisplayMesh> display_source(const AttributedMesh& source) {
+Result<DisplayMesh> display_source(const AttributedMesh& source,
+                                   const std::vector<std::uint8_t>& patch) {
   auto own = carry_texture(source, source, identity_map(source.prepared.mesh));
   if (!own) return tl::unexpected(own.error());
   DisplayMesh display;
@@ -42,14 +44,17 @@ Result<DisplayMesh> display_source(const AttributedMesh& source) {
   locate_corners(source.prepared.mesh, display);
   for (const SurfacePoint& p : display.corner)
     display.place.push_back(position(source.prepared.mesh, p));
+  for (const int f : display.mesh.target_face) display.patch.push_back(patch[idx(f)]);
   return display;
 }
 
 Result<DisplayMesh> display_target(const AttributedMesh& source,
                                    const AttributedMesh& target,
+                                   const std::vector<std::uint8_t>& patch,
                                    const SurfaceMap& map,
                                    double tolerance) {
-  // Places are carried as two more UV sets, in a scale at which the tolerance of UVs means ours.
+  // Places are carried as two more UV sets, in a scale at which the tolerance of UVs means ours;
+  // the last coordinate holds the patch, at whose borders it jumps, as UVs do at seams.
   CarryTextureOptions options;
   const Eigen::RowVector3d low = source.soup.positions.colwise().minCoeff();
   const double size = (source.soup.positions.colwise().maxCoeff() - low).maxCoeff();
@@ -60,7 +65,13 @@ Result<DisplayMesh> display_target(const AttributedMesh& source,
   for (const int v : soup.corner_vertex) {
     const Vector3d p = (soup.positions.row(v) - low).transpose() * scale;
     xy.emplace_back(p[0], p[1]);
-    z.emplace_back(p[2], 0);
+    z.emplace_back(p[2], kNoPatch);
+  }
+  const std::vector<int> polygon = polygon_of_corner(soup);
+  for (int f = source.prepared.mesh.face_count() - 1; f >= 0; --f) {
+    const int p = polygon[idx(source.prepared.numbering.soup_corner[idx(3 * f)])];
+    for (int c = soup.polygon_begin[idx(p)]; c < soup.polygon_begin[idx(p) + 1]; ++c)
+      z[idx(c)][1] = patch[idx(f)];
   }
   soup.uv_sets.push_back(std::move(xy));
   soup.uv_sets.push_back(std::move(z));
@@ -76,6 +87,8 @@ Result<DisplayMesh> display_target(const AttributedMesh& source,
     display.place.push_back(
         mapped ? Vector3d(Vector3d(a[0], a[1], b[0]) / scale + low.transpose())
                : Vector3d(Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())));
+    if (c % 3 == 0)
+      display.patch.push_back(mapped ? static_cast<std::uint8_t>(std::lround(b[1])) : kNoPatch);
   }
   display.mesh.uv_sets.resize(first);
   return display;

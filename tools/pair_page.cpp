@@ -179,10 +179,7 @@ class MeshWriter {
  public:
   MeshWriter(const SurfaceView& view, const Grid& places) : view_(view), places_(places) {}
 
-  /// `patch`: per triangle of the display mesh.
-  ordered_json write(const DisplayMesh& display,
-                     const Eigen::VectorXd& distortion,
-                     const std::vector<std::uint8_t>& patch) {
+  ordered_json write(const DisplayMesh& display, const Eigen::VectorXd& distortion) {
     const TexturedMesh& mesh = display.mesh;
     const Grid grid(mesh.positions);
     const Eigen::VectorXd& adf = view_.features.log_adf;
@@ -212,7 +209,7 @@ class MeshWriter {
             v.color[i] = byte(mesh.colors.empty() ? 1 : std::sqrt(double(mesh.colors[c][i])));
           v.adf = byte((at(adf, view_.mesh.prepared.mesh, p) - low) / range);
           v.distortion = byte(distortion_place(at(distortion, view_.mesh.prepared.mesh, p)));
-          v.patch = patch[idx(t)];
+          v.patch = display.patch[idx(t)];
           add(v);
         }
     }
@@ -306,40 +303,6 @@ ordered_json matches_json(const std::vector<Landmark>& landmarks,
   return matches;
 }
 
-/// Patch of the source's face under the middle of each triangle, 255 where nothing is mapped.
-std::vector<std::uint8_t> carried_patches(const DisplayMesh& display,
-                                          const SurfaceMap& map,
-                                          const std::vector<std::uint8_t>& of_source) {
-  // Source faces that the polygons of a target face lie in, with a corner to tell them by.
-  std::vector<std::vector<int>> polygons;
-  for (int p = 0; p < map.polygon_count(); ++p) {
-    const std::size_t f = idx(map.target_face[idx(p)]);
-    if (f >= polygons.size()) polygons.resize(f + 1);
-    polygons[f].push_back(p);
-  }
-  std::vector<std::uint8_t> patch;
-  for (int t = 0; t < display.mesh.triangle_count(); ++t) {
-    const int face = display.mesh.target_face[idx(t)];
-    const Vector3d middle = (display.corner[idx(3 * t)].bary + display.corner[idx(3 * t + 1)].bary +
-                             display.corner[idx(3 * t + 2)].bary) /
-                            3;
-    std::uint8_t best = 255;
-    double nearest = std::numeric_limits<double>::max();
-    if (idx(face) < polygons.size())
-      for (const int p : polygons[idx(face)])
-        for (int i = map.polygon_begin[idx(p)]; i < map.polygon_begin[idx(p + 1)]; ++i) {
-          const SurfacePoint& q = map.target[idx(map.corner[idx(i)])];
-          if (q.face != face) continue;
-          const double distance = (q.bary - middle).squaredNorm();
-          if (distance >= nearest) continue;
-          nearest = distance;
-          best = of_source[idx(map.source_face[idx(p)])];
-        }
-    patch.push_back(best);
-  }
-  return patch;
-}
-
 /// The characters that end a script or a string early, made harmless.
 std::string in_script(std::string text) {
   for (std::size_t i = text.find("</"); i != std::string::npos; i = text.find("</", i + 3))
@@ -382,10 +345,10 @@ Result<std::string> pair_page(const PairRun& run, const RunReport& report) {
   if (!source) return tl::unexpected(source.error());
   const auto target = view_surface(run.target);
   if (!target) return tl::unexpected(target.error());
-  const auto own = display_source(source->mesh);
+  const std::vector<std::uint8_t> patches = basins(*source);
+  const auto own = display_source(source->mesh, patches);
   if (!own) return tl::unexpected(own.error());
   const Grid places(own->mesh.positions);
-  const std::vector<std::uint8_t> patches = basins(*source);
   ordered_json data = {{"version", 1}};
   const auto file = [](const std::string& path) {
     return std::filesystem::path(path).filename().string();
@@ -402,22 +365,17 @@ Result<std::string> pair_page(const PairRun& run, const RunReport& report) {
                        const std::vector<Landmark>& landmarks,
                        double margin) -> Status {
     const SurfaceMap& map = result.map;
-    const auto carried = display_target(source->mesh, target->mesh, map, kPlaceTolerance);
+    const auto carried = display_target(source->mesh, target->mesh, patches, map, kPlaceTolerance);
     if (!carried) return tl::unexpected(carried.error());
     const VertexDistortion distortion =
         vertex_distortion(map, run.source.prepared.mesh, run.target.prepared.mesh);
-    std::vector<std::uint8_t> of_triangle;
-    for (const int f : own->mesh.target_face) of_triangle.push_back(patches[idx(f)]);
-    maps.push_back(
-        {{"name", label},
-         {"margin", std::isfinite(margin) ? ordered_json(margin) : ordered_json()},
-         {"materials", materials_json(carried->mesh)},
-         {"source", MeshWriter(*source, places).write(*own, distortion.source, of_triangle)},
-         {"target",
-          MeshWriter(*target, places)
-              .write(*carried, distortion.target, carried_patches(*carried, map, patches))},
-         {"matches", matches_json(landmarks, margin, *source, *target)},
-         {"median_energy", result.quality.median}});
+    maps.push_back({{"name", label},
+                    {"margin", std::isfinite(margin) ? ordered_json(margin) : ordered_json()},
+                    {"materials", materials_json(carried->mesh)},
+                    {"source", MeshWriter(*source, places).write(*own, distortion.source)},
+                    {"target", MeshWriter(*target, places).write(*carried, distortion.target)},
+                    {"matches", matches_json(landmarks, margin, *source, *target)},
+                    {"median_energy", result.quality.median}});
     return {};
   };
   const MatchedMap& matched = run.matched;

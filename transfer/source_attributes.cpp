@@ -14,14 +14,6 @@ std::array<const TextureRef*, 5> textures(const Material& m) {
   return {&m.base_color, &m.metallic_roughness, &m.normal, &m.occlusion, &m.emissive};
 }
 
-std::vector<int> polygon_of_corner(const PolygonSoup& soup) {
-  std::vector<int> polygon(soup.corner_vertex.size());
-  for (int p = 0; p < soup.polygon_count(); ++p)
-    for (int c = soup.polygon_begin[idx(p)]; c < soup.polygon_begin[idx(p + 1)]; ++c)
-      polygon[idx(c)] = p;
-  return polygon;
-}
-
 /// A texture transform scales UVs before it turns them; under a turn either axis may meet either
 /// side of the image, so the larger product is taken.
 Vector2d texels_per_unit(const PolygonSoup& soup, const TextureRef& t) {

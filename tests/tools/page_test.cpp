@@ -33,7 +33,12 @@ TEST(DisplayMesh, PlacesAreWhereTheMapComesFrom) {
   const shapes::Surface source = shapes::surface_of(shapes::jittered_grid(shapes::grid(5), 5, 1));
   const shapes::Surface target = shapes::surface_of(shapes::jittered_grid(shapes::grid(6), 6, 2));
   const SurfaceMap map = shapes::planar_overlay(source.prepared.mesh, target.prepared.mesh);
-  const auto display = display_target(source.view(), target.view(), map, 0.005);
+  const auto display =
+      display_target(source.view(),
+                     target.view(),
+                     std::vector<std::uint8_t>(idx(source.prepared.mesh.face_count()), 0),
+                     map,
+                     0.005);
   ASSERT_TRUE(display) << display.error().message;
   const TexturedMesh& mesh = display->mesh;
   EXPECT_TRUE(mesh.uv_sets.empty());
@@ -47,10 +52,38 @@ TEST(DisplayMesh, PlacesAreWhereTheMapComesFrom) {
 
 TEST(DisplayMesh, OfTheSourceStaysInPlace) {
   shapes::Surface sphere = shapes::surface_of(shapes::icosphere(1));
-  const auto display = display_source(sphere.view());
+  const auto display = display_source(
+      sphere.view(), std::vector<std::uint8_t>(idx(sphere.prepared.mesh.face_count()), 7));
   ASSERT_TRUE(display) << display.error().message;
   EXPECT_EQ(display->mesh.triangle_count(), sphere.prepared.mesh.face_count());
   for (const Vector3d& p : display->place) EXPECT_NEAR(p.norm(), 1, 1e-9);
+  EXPECT_THAT(display->patch, testing::Each(7));
+}
+
+TEST(DisplayMesh, IsCutAlongTheBordersOfPatches) {
+  const shapes::Surface source = shapes::surface_of(shapes::jittered_grid(shapes::grid(5), 5, 1));
+  const shapes::Surface target = shapes::surface_of(shapes::jittered_grid(shapes::grid(3), 3, 2));
+  const TriangleMesh& mesh = source.prepared.mesh;
+  std::vector<std::uint8_t> patch;
+  std::array<double, 3> area{}, carried{};
+  const Eigen::VectorXd areas = face_areas(mesh);
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    patch.push_back(static_cast<std::uint8_t>(f % 3));
+    area[idx(f % 3)] += areas[f];
+  }
+  const SurfaceMap map = shapes::planar_overlay(mesh, target.prepared.mesh);
+  const auto display = display_target(source.view(), target.view(), patch, map, 0.005);
+  ASSERT_TRUE(display) << display.error().message;
+  ASSERT_EQ(idx(display->mesh.triangle_count()), display->patch.size());
+  for (int t = 0; t < display->mesh.triangle_count(); ++t) {
+    ASSERT_LT(display->patch[idx(t)], 3);
+    const auto p = [&](int k) -> Vector3d {
+      return display->mesh.positions.row(display->mesh.triangles(t, k)).transpose();
+    };
+    carried[display->patch[idx(t)]] += (p(1) - p(0)).cross(p(2) - p(0)).norm() / 2;
+  }
+  // The map is the identity of the plane: each patch keeps its area.
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(carried[k], area[k], 1e-6);
 }
 
 }  // namespace
