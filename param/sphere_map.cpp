@@ -85,6 +85,7 @@ double SphereMap::optimize_roughly() {
 double SphereMap::optimize_coarse() {
   relax_worst(level_, source_.mesh.V, lift_, pinned_, X_, hint_);
   const double energy = descend(options_.coarse_iterations);
+  held_ = Held{level_, X_, pinned_};
   return release() ? descend(options_.coarse_iterations) : energy;
 }
 
@@ -156,6 +157,12 @@ double SphereMap::coarse_distance(const SphereMap& other) const {
 }
 
 Status SphereMap::refine() {
+  if (held_) {
+    level_ = std::move(held_->level);
+    X_ = std::move(held_->X);
+    pinned_ = std::move(held_->pinned);
+    held_.reset();
+  }
   const Refinement coarse = level_;
   const MatrixX3d places = X_;
   if (!spread_out()) {
@@ -204,6 +211,7 @@ Status SphereMap::split_back(double growth) {
 }
 
 void SphereMap::settle() {
+  release();
   const TriangleMesh& b = target_.mesh;
   std::vector<int> pinned;
   for (const Landmark& l : landmarks_)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "param/initial_map.hpp"
@@ -35,7 +36,8 @@ class SphereMap {
   /// A few steps on the coarse level, landmarks held. Returns its energy: mean distortion of both
   /// ways (isometry: 4) plus the weighted disagreement of curvatures.
   double optimize_roughly();
-  /// Optimises the coarse level and releases the landmarks that are not pinned.
+  /// Optimises the coarse level, lets go of the landmarks that are not pinned and optimises it
+  /// again. That tells what the map costs; refine() goes on from where all landmarks were held.
   double optimize_coarse();
   /// Area-weighted mean logarithm of the distortion of the coarse map, of both directions: the
   /// inverse is looked at at the target's coarse vertices, because a protrusion that one face
@@ -47,10 +49,13 @@ class SphereMap {
   /// Mean distance on the surface, measured straight through space, between the images of the
   /// coarse vertices under this coarse map and another one of the same two surfaces.
   [[nodiscard]] double coarse_distance(const SphereMap& other) const;
-  /// Goes to the full mesh and optimises it. Errors of start and refine_on_sphere.
+  /// Goes to the full mesh and optimises it, all landmarks held: a limb that is let go too early
+  /// may slip off its counterpart, whose end one face swallows unseen (on a cow and a donkey 1 % of
+  /// the area then has energies above 14000, from 300). Errors of start and refine_on_sphere.
   Status refine();
-  /// Lets the target's vertices move under the same energy of the inverse map, and then the
-  /// source's again: each side only sees what happens at its own vertices.
+  /// Lets go of the landmarks that are not pinned and lets the target's vertices move under the
+  /// same energy of the inverse map, and then the source's again: each side only sees what happens
+  /// at its own vertices.
   void settle();
   /// The common subdivision; vertices in special position are moved by a billionth of their edges.
   Result<SurfaceMap> overlay();
@@ -79,6 +84,13 @@ class SphereMap {
   MatrixX3d X_;  ///< places of the source's vertices
   std::vector<int> hint_;
   std::vector<int> pinned_;  ///< source vertices that may not move
+  /// The coarse level when all landmarks were held for the last time.
+  struct Held {
+    Refinement level;
+    MatrixX3d X;
+    std::vector<int> pinned;
+  };
+  std::optional<Held> held_;
 };
 
 }  // namespace crosspatch

@@ -24,7 +24,7 @@ export const layers = [
   {
     key: 'patches',
     name: 'Patches',
-    about: 'Regions of the source that lead to one tip and one hollow, and the triangles they went to.',
+    about: 'Regions of the source that lead to one tip and one hollow, and where they went.',
   },
 ];
 
