@@ -155,6 +155,17 @@ try {
     await page.keyboard.press('r');
   }
 
+  // Every axis can point up, and the sixth press brings back the first.
+  await changed();
+  const ups = [];
+  for (let i = 0; i < 6; ++i) {
+    await page.keyboard.press('u');
+    ups.push(await page.getByRole('button', { name: 'Up:' }).textContent());
+    if (i < 5) check(await changed() > 0.05, `the surfaces are turned: ${ups.at(-1)}`);
+  }
+  await changed();
+  check(new Set(ups).size === 6, 'six axes can point up');
+
   // Turning one surface turns both while they are linked.
   await changed();
   const box = await page.locator('#source').boundingBox();

@@ -103,7 +103,7 @@ function toggleLink() {
 }
 
 function turnUp() {
-  state.up = { y: 'z', z: 'x', x: 'y' }[state.up];
+  state.up = { y: 'z', z: 'x', x: '-y', '-y': '-z', '-z': '-x', '-x': 'y' }[state.up];
   for (const side of sides) panes[side].setUp(state.up);
   panel.showUp(state.up);
   requestDraw();

@@ -44,7 +44,9 @@ export class Pane {
 
   /** Turns the mesh so that its axis 'x', 'y' or 'z' points up. */
   setUp(axis) {
-    this.world.rotation.set(axis === 'z' ? -Math.PI / 2 : 0, 0, axis === 'x' ? Math.PI / 2 : 0);
+    const quarters = { y: [0, 0], z: [-1, 0], x: [0, 1], '-y': [0, 2], '-z': [1, 0], '-x': [0, -1] };
+    const [aboutX, aboutZ] = quarters[axis];
+    this.world.rotation.set((aboutX * Math.PI) / 2, 0, (aboutZ * Math.PI) / 2);
     this.world.updateMatrixWorld(true);
   }
 
