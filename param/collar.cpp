@@ -1,7 +1,5 @@
 #include "param/collar.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,111 +17,7 @@ namespace crosspatch {
 namespace {
 
 using std::size_t;
-using Side = std::pair<int, int>;                  ///< of a polygon, from corner to corner
-using Between = std::map<Side, std::vector<int>>;  ///< vertices to be put on sides, in order
-
-struct Polygon {
-  std::vector<int> corners;
-  int face = -1;  ///< of the parent
-};
-
-/// Puts vertices on the sides of a polygon, whichever way the sides are listed.
-std::vector<int> with_points(const std::vector<int>& corners, const Between& between) {
-  std::vector<int> all;
-  for (size_t i = 0; i < corners.size(); ++i) {
-    const int u = corners[i], v = corners[(i + 1) % corners.size()];
-    all.push_back(u);
-    if (const auto at = between.find({u, v}); at != between.end())
-      all.insert(all.end(), at->second.begin(), at->second.end());
-    else if (const auto back = between.find({v, u}); back != between.end())
-      all.insert(all.end(), back->second.rbegin(), back->second.rend());
-  }
-  return all;
-}
-
-/// Polygons as triangles: those with more than three corners around a vertex in their middle.
-Result<Piece> triangulate(const TriangleMesh& parent,
-                          const std::vector<Polygon>& polygons,
-                          std::vector<SurfacePoint> origin,
-                          std::vector<int> point) {
-  Piece piece;
-  std::vector<std::array<int, 3>> faces;
-  for (const Polygon& p : polygons) {
-    const size_t n = p.corners.size();
-    if (n == 3) {
-      faces.push_back({p.corners[0], p.corners[1], p.corners[2]});
-      piece.parent_face.push_back(p.face);
-      continue;
-    }
-    SurfacePoint middle{p.face, Vector3d::Zero()};
-    for (const int v : p.corners)
-      middle.bary += in_face(parent, origin[idx(v)], p.face).bary / static_cast<double>(n);
-    for (size_t i = 0; i < n; ++i) {
-      faces.push_back({p.corners[i], p.corners[(i + 1) % n], static_cast<int>(origin.size())});
-      piece.parent_face.push_back(p.face);
-    }
-    origin.push_back(middle);
-    point.push_back(-1);
-  }
-  MatrixX3d V(static_cast<Eigen::Index>(origin.size()), 3);
-  for (size_t i = 0; i < origin.size(); ++i)
-    V.row(static_cast<Eigen::Index>(i)) = position(parent, origin[i]).transpose();
-  MatrixX3i F(static_cast<Eigen::Index>(faces.size()), 3);
-  for (size_t i = 0; i < faces.size(); ++i)
-    F.row(static_cast<Eigen::Index>(i)) << faces[i][0], faces[i][1], faces[i][2];
-  auto mesh = make_mesh(std::move(V), std::move(F));
-  if (!mesh) return tl::unexpected(mesh.error());
-  piece.mesh = std::move(*mesh);
-  piece.origin = std::move(origin);
-  piece.point = std::move(point);
-  return piece;
-}
-
-std::vector<Polygon> as_polygons(const Piece& piece) {
-  std::vector<Polygon> polygons;
-  for (int f = 0; f < piece.mesh.face_count(); ++f)
-    polygons.push_back(
-        {{piece.mesh.F(f, 0), piece.mesh.F(f, 1), piece.mesh.F(f, 2)}, piece.parent_face[idx(f)]});
-  return polygons;
-}
-
-/// The piece with more vertices on its edges; `between` holds numbers that follow on the piece's
-/// own, `added` their places.
-Result<Piece> with_points(const TriangleMesh& parent,
-                          const Piece& piece,
-                          const Between& between,
-                          const std::vector<SurfacePoint>& added) {
-  std::vector<Polygon> polygons = as_polygons(piece);
-  for (Polygon& p : polygons) p.corners = with_points(p.corners, between);
-  std::vector<SurfacePoint> origin = piece.origin;
-  origin.insert(origin.end(), added.begin(), added.end());
-  std::vector<int> point = piece.point;
-  point.resize(origin.size(), -1);
-  return triangulate(parent, polygons, std::move(origin), std::move(point));
-}
-
-/// A point of half-edge h, a share of the way along.
-SurfacePoint on_edge(const TriangleMesh& parent, const Piece& piece, int h, double share) {
-  const int face = piece.parent_face[idx(face_of(h))];
-  const auto end = [&](int v) { return in_face(parent, piece.origin[idx(v)], face).bary; };
-  return {face, (1 - share) * end(piece.mesh.from(h)) + share * end(piece.mesh.to(h))};
-}
-
-/// Splits every inner edge that joins two boundary vertices.
-Result<Piece> without_chords(const TriangleMesh& parent, const Piece& piece) {
-  const TriangleMesh& mesh = piece.mesh;
-  std::vector<bool> rim(idx(mesh.vertex_count()), false);
-  for (int h = 0; h < mesh.halfedge_count(); ++h)
-    if (mesh.twin[idx(h)] < 0) rim[idx(mesh.from(h))] = true;
-  Between between;
-  std::vector<SurfacePoint> added;
-  for (int h = 0; h < mesh.halfedge_count(); ++h) {
-    if (h > mesh.twin[idx(h)] || !rim[idx(mesh.from(h))] || !rim[idx(mesh.to(h))]) continue;
-    between[{mesh.from(h), mesh.to(h)}] = {mesh.vertex_count() + static_cast<int>(added.size())};
-    added.push_back(on_edge(parent, piece, h, 0.5));
-  }
-  return with_points(parent, piece, between, added);
-}
+using Side = std::pair<int, int>;  ///< of a polygon, from corner to corner
 
 /// One surface's half of a map.
 struct HalfMap {
@@ -252,7 +146,7 @@ class AnnulusMaker {
     for (const int q : other)
       if (const int v = original_at(q); v >= 0) point_at[1][v] = q;
     const std::array edges{by_edge(rim), by_edge(other)};
-    Between between;
+    SidePoints between;
     for (const auto& [edge, first] : edges[0]) {
       const auto second = edges[1].find(edge);
       if (second == edges[1].end()) continue;
@@ -270,7 +164,7 @@ class AnnulusMaker {
         last[s] = q;
       }
     }
-    for (Polygon& p : polygons_) {
+    for (PiecePolygon& p : polygons_) {
       p.corners = with_points(p.corners, between);
       for (int& q : p.corners)
         if (const int v = vertex_at_.count(q) > 0 ? original_at(q) : -1; v >= 0)
@@ -280,7 +174,7 @@ class AnnulusMaker {
 
   /// The list of what is put between a point of a bank and the next one of the same bank.
   static std::vector<int>& pending(
-      Between& between, int last, const std::vector<int>* list, size_t at, int end) {
+      SidePoints& between, int last, const std::vector<int>* list, size_t at, int end) {
     return between[{last, at < list->size() ? (*list)[at] : end}];
   }
 
@@ -288,7 +182,7 @@ class AnnulusMaker {
     std::map<int, int> number;
     std::vector<SurfacePoint> origin;
     std::vector<int> point;
-    for (Polygon& p : polygons_)
+    for (PiecePolygon& p : polygons_)
       for (int& q : p.corners) {
         const auto [at, fresh] = number.emplace(q, static_cast<int>(point.size()));
         if (fresh) {
@@ -305,7 +199,7 @@ class AnnulusMaker {
   const std::vector<int>& region_;
   const CollarPart& part_;
   std::unordered_map<int, int> vertex_at_;
-  std::vector<Polygon> polygons_;
+  std::vector<PiecePolygon> polygons_;
   std::map<int, SurfacePoint> origin_;
 };
 
@@ -336,9 +230,8 @@ std::vector<int> shortest_path(const TriangleMesh& mesh,
       std::reverse(path.begin(), path.end());
       return path;
     }
-    if (rim[idx(v)] && d > 0) continue;
     const auto step = [&](int w) {
-      if ((rim[idx(w)] && !goal[idx(w)])) return;
+      if (rim[idx(w)] && !goal[idx(w)]) return;
       const double there = d + (mesh.position(v) - mesh.position(w)).norm();
       if (there >= distance[idx(w)]) return;
       distance[idx(w)] = there;
@@ -363,7 +256,7 @@ std::vector<double> shares(const TriangleMesh& mesh, const std::vector<int>& cha
 
 /// A chain of vertices that is to be refined with vertices at more shares of its length.
 struct Refining {
-  Between between;
+  SidePoints between;
   std::vector<SurfacePoint> added;
   int count = 0;  ///< of the vertices there are
 
@@ -457,13 +350,13 @@ Status choose_cuts(const std::array<const TriangleMesh*, 2>& surfaces,
   return {};
 }
 
-/// Cuts the annulus open. Keys: the overlay's points on outer rims, below zero on the path and, by
-/// the thousand millions lower, on the rim of a hole.
+/// Cuts the annulus open. Keys: the overlay's points on outer rims; below zero, first along the
+/// path, then along the rim of a hole.
 Result<CollarSide> cut_open(const Annulus& annulus, const Scissors& cut) {
   const Piece& piece = annulus.piece;
   std::vector<int> key = piece.point;
   for (size_t i = 0; i < cut.rim.size(); ++i)
-    key[idx(cut.rim[i])] = -1000000000 - static_cast<int>(i);
+    key[idx(cut.rim[i])] = -1 - static_cast<int>(cut.path.size() + i);
   for (size_t i = 1; i + 1 < cut.path.size(); ++i) key[idx(cut.path[i])] = -1 - static_cast<int>(i);
   std::vector<bool> marked(idx(piece.mesh.halfedge_count()), false);
   for (size_t i = 0; i + 1 < cut.path.size(); ++i)

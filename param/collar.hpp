@@ -4,17 +4,10 @@
 #include <vector>
 
 #include "param/capped.hpp"
+#include "param/piece.hpp"
 #include "param/surface_map.hpp"
 
 namespace crosspatch {
-
-/// A mesh made of pieces of the faces of another one.
-struct Piece {
-  TriangleMesh mesh;
-  std::vector<SurfacePoint> origin;  ///< per vertex: where it lies on the parent
-  std::vector<int> parent_face;      ///< per face
-  std::vector<int> point;            ///< per vertex: the overlay's point there, or -1
-};
 
 /// One side of a collar: the strip of a surface around an opening, cut open to a disc.
 struct CollarSide {
