@@ -8,7 +8,9 @@
 #include <map>
 
 #include "core/index.hpp"
+#include "tools/image_io.hpp"
 #include "tools/samples/coat.hpp"
+#include "tools/samples/letters.hpp"
 
 namespace crosspatch {
 namespace {
@@ -77,6 +79,23 @@ Status write_png(const std::string& path, const CoatImage& image) {
   return {};
 }
 
+Status write_material(const std::string& folder, const std::string& stem, const std::string& name) {
+  return write_text(folder + "/" + stem + ".mtl",
+                    fmt::format("# made by crosspatch's make_samples\nnewmtl {}\nKd 1 1 1\n"
+                                "map_Kd {}.png\n",
+                                name,
+                                stem));
+}
+
+Status write_letters(const std::string& folder) {
+  const LetterBox box = make_letter_box();
+  if (Status s = write_text(folder + "/letters.obj", box.obj); !s) return s;
+  if (Status s = write_material(folder, "letters", "letters"); !s) return s;
+  const auto png = encode_png(box.image);
+  if (!png) return tl::unexpected(png.error());
+  return write_text(folder + "/letters.png", std::string(png->begin(), png->end()));
+}
+
 Status write_sample(const std::string& folder, const Sample& sample) {
   const std::string& name = sample.creature.name;
   const std::string stem = folder + "/" + name;
@@ -85,22 +104,17 @@ Status write_sample(const std::string& folder, const Sample& sample) {
   if (sample.coat == nullptr) return write_text(stem + ".obj", plain_obj(*mesh));
   const Atlas atlas = make_atlas(sample.creature, *mesh, kTextureSize);
   if (Status s = write_text(stem + ".obj", textured_obj(name, *mesh, atlas)); !s) return s;
-  const std::string material =
-      "# made by crosspatch's make_samples\nnewmtl coat\nKd 1 1 1\nmap_Kd " + name + ".png\n";
-  if (Status s = write_text(stem + ".mtl", material); !s) return s;
+  if (Status s = write_material(folder, name, "coat"); !s) return s;
   return write_png(stem + ".png", paint_coat(sample.creature, *sample.coat, *mesh, atlas));
 }
 
-int run(const std::string& folder) {
+Status write_all(const std::string& folder) {
   const CoatColors lira = lira_colors(), bodo = bodo_colors();
   for (const Sample& sample : {Sample{make_lira(), 0.043, &lira},
                                Sample{make_bodo(), 0.050, &bodo},
                                Sample{make_tola(), 0.048, nullptr}})
-    if (const Status s = write_sample(folder, sample); !s) {
-      fmt::print(stderr, "make_samples: {}\n", s.error().message);
-      return 5;
-    }
-  return 0;
+    if (Status s = write_sample(folder, sample); !s) return s;
+  return write_letters(folder);
 }
 
 }  // namespace
@@ -111,5 +125,9 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "usage: make_samples FOLDER\n");
     return 2;
   }
-  return crosspatch::run(argv[1]);
+  if (const crosspatch::Status s = crosspatch::write_all(argv[1]); !s) {
+    fmt::print(stderr, "make_samples: {}\n", s.error().message);
+    return 5;
+  }
+  return 0;
 }
