@@ -60,8 +60,9 @@ struct ThinningOptions {
 /// Removes points of the overlay that are neither vertices of the target nor needed by a seam or a
 /// tolerance, in index order until none is left that can go. Points on edges of the target go on
 /// both sides at once, so that the mesh stays conforming; the surface stays where it is. Errors are
-/// measured against the overlay itself, at its removed points and at the middles of its removed
-/// sides. Returns the largest error that was accepted.
+/// measured against the overlay itself, at its removed points and where its removed sides meet the
+/// new ones: between these places attributes and errors are linear. Returns the largest error that
+/// was accepted.
 AttributeError thin_out(OverlayMesh& mesh,
                         const SourceAttributes& attributes,
                         const TriangleMesh& target,

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <compare>
+#include <limits>
 #include <optional>
 #include <unordered_map>
 
@@ -11,11 +13,27 @@ namespace {
 
 using Triangle = OverlayMesh::Triangle;
 
-/// A place where the exact attributes are known: a wedge (a == b), or the middle of an exact side.
+/// Where the exact attributes are known: at a wedge (a == b), or linear along an exact side a < b.
 struct Sample {
   int a;
   int b;
+  auto operator<=>(const Sample&) const = default;
 };
+
+/// The part of a segment inside a triangle, from its ends' weights there; none if that is no longer
+/// than rounding.
+std::optional<std::array<double, 2>> part_inside(const Vector3d& from, const Vector3d& to) {
+  constexpr double kRounding = 1e-9;
+  double begin = 0, end = 1;
+  for (int k = 0; k < 3; ++k) {
+    const double step = to[k] - from[k];
+    if (step > 0) begin = std::max(begin, -from[k] / step);
+    if (step < 0) end = std::min(end, -from[k] / step);
+    if (step == 0 && from[k] < 0) return std::nullopt;
+  }
+  if (!(end - begin > kRounding)) return std::nullopt;
+  return std::array{begin, end};
+}
 
 /// The triangles around a point between two sides that must stay, counter-clockwise: triangle i
 /// holds the point, rim[i] and rim[i + 1].
@@ -194,6 +212,7 @@ class Thinner {
     return patch;
   }
 
+  /// What the sector's triangles were measured at, its removed point and its removed sides.
   std::vector<Sample> gather(int point, const Sector& sector) const {
     std::vector<Sample> all;
     for (const int t : sector.triangles) {
@@ -201,49 +220,78 @@ class Thinner {
       all.insert(all.end(), own.begin(), own.end());
       const Triangle& triangle = mesh_.triangles[idx(t)];
       const std::size_t k = corner_at(t, point);
-      if ((triangle.side[k] & kExact) != 0)
-        all.push_back({triangle.wedge[k], triangle.wedge[(k + 1) % 3]});
+      const auto [a, b] = std::minmax(triangle.wedge[k], triangle.wedge[(k + 1) % 3]);
+      if ((triangle.side[k] & kExact) != 0) all.push_back({a, b});
     }
     const Triangle& first = mesh_.triangles[idx(sector.triangles.front())];
     const int wedge = first.wedge[corner_at(sector.triangles.front(), point)];
     all.push_back({wedge, wedge});
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
     return all;
   }
 
-  /// Hands each sample to the new triangle that holds it; false if one is out of tolerance.
+  /// Hands each sample to the new triangles that hold a part of it; false if one is out of
+  /// tolerance. The error is linear along such a part, so that its ends tell the largest.
   bool distribute(const std::vector<Sample>& all, int face, Patch& patch) const {
-    const std::size_t width = idx(attributes_.width);
-    std::vector<double> exact(width), linear(width);
     std::vector<std::array<Vector3d, 3>> corners;
     for (const Triangle& t : patch.triangles)
       corners.push_back({bary(t.wedge[0], face), bary(t.wedge[1], face), bary(t.wedge[2], face)});
+    const auto weights = [&](std::size_t i, const Vector3d& p) -> Vector3d {
+      const auto& [a, b, c] = corners[i];
+      return Vector3d(signed_area(p, b, c), signed_area(a, p, c), signed_area(a, b, p)) /
+             signed_area(a, b, c);
+    };
     for (const Sample& s : all) {
-      const Vector3d place = (bary(s.a, face) + bary(s.b, face)) / 2;
+      const Vector3d from = bary(s.a, face), to = bary(s.b, face);
+      bool held = false;
+      for (std::size_t i = 0; i < corners.size() && s.a != s.b; ++i) {
+        const Vector3d first = weights(i, from), last = weights(i, to);
+        const auto part = part_inside(first, last);
+        if (!part) continue;
+        held = true;
+        for (const double t : *part)
+          if (!agrees(s, t, (1 - t) * first + t * last, patch.triangles[i], patch.error))
+            return false;
+        patch.samples[i].push_back(s);
+      }
+      if (held) continue;
+      // A point, or a side that rounding keeps out of every triangle.
       std::size_t holder = 0;
-      Vector3d weights = Vector3d::Constant(-2);
+      Vector3d nearest = Vector3d::Constant(-std::numeric_limits<double>::infinity());
       for (std::size_t i = 0; i < corners.size(); ++i) {
-        const auto& [a, b, c] = corners[i];
-        Vector3d w(signed_area(place, b, c), signed_area(a, place, c), signed_area(a, b, place));
-        w /= signed_area(a, b, c);
-        if (w.minCoeff() > weights.minCoeff()) {
-          weights = w;
-          holder = i;
-        }
+        const Vector3d w = weights(i, (from + to) / 2);
+        if (w.minCoeff() <= nearest.minCoeff()) continue;
+        nearest = w;
+        holder = i;
       }
-      const Triangle& t = patch.triangles[holder];
-      for (std::size_t i = 0; i < width; ++i) {
-        const auto value = [&](int wedge) { return mesh_.attributes[idx(wedge) * width + i]; };
-        exact[i] = (value(s.a) + value(s.b)) / 2;
-        linear[i] = weights[0] * value(t.wedge[0]) + weights[1] * value(t.wedge[1]) +
-                    weights[2] * value(t.wedge[2]);
-      }
-      const AttributeError e = difference(attributes_, t.material, exact.data(), linear.data());
-      if (e.uv_texels > options_.uv_tolerance_texels || e.color > options_.color_tolerance)
-        return false;
-      patch.error.uv_texels = std::max(patch.error.uv_texels, e.uv_texels);
-      patch.error.color = std::max(patch.error.color, e.color);
+      if (!agrees(s, 0.5, nearest, patch.triangles[holder], patch.error)) return false;
       patch.samples[holder].push_back(s);
     }
+    return true;
+  }
+
+  /// Whether a triangle's attributes at the point of these weights are those at `t` along the
+  /// sample, within the tolerances; `worst` grows to the error.
+  bool agrees(const Sample& s,
+              double t,
+              const Vector3d& weights,
+              const Triangle& triangle,
+              AttributeError& worst) const {
+    const std::size_t width = idx(attributes_.width);
+    std::vector<double> exact(width), linear(width);
+    for (std::size_t i = 0; i < width; ++i) {
+      const auto value = [&](int wedge) { return mesh_.attributes[idx(wedge) * width + i]; };
+      exact[i] = (1 - t) * value(s.a) + t * value(s.b);
+      linear[i] = weights[0] * value(triangle.wedge[0]) + weights[1] * value(triangle.wedge[1]) +
+                  weights[2] * value(triangle.wedge[2]);
+    }
+    const AttributeError e =
+        difference(attributes_, triangle.material, exact.data(), linear.data());
+    if (e.uv_texels > options_.uv_tolerance_texels || e.color > options_.color_tolerance)
+      return false;
+    worst.uv_texels = std::max(worst.uv_texels, e.uv_texels);
+    worst.color = std::max(worst.color, e.color);
     return true;
   }
 
