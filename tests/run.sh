@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Builds the program and passes every test: unit and data tests, then outside readers of what we
-# write (Khronos' glTF validator, three.js in headless Chromium), and the report's page.
+# write (a judge of seams, Khronos' glTF validator, three.js and model-viewer in headless Chromium,
+# Blender), and the report's page.
 # Data tests use $CROSSPATCH_DATA, else ../shared/data where that exists, and are skipped otherwise.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -17,12 +18,25 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 (cd tests/gltf && npm ci --no-audit --no-fund --loglevel=error)
 build/dev/tests/write_gltf_examples "$scratch"
-build/dev/crosspatch transfer samples/lira.obj samples/tola.obj --output "$scratch/tola.glb" --quiet
-build/dev/crosspatch transfer samples/lira.obj samples/tola.obj --mode bake --size 512 \
-  --output "$scratch/baked.glb" --quiet
+program=build/dev/crosspatch
+tests/gltf/keep.sh "$program" "$scratch"
+"$program" transfer samples/lira.obj samples/tola.obj --map "$scratch/lira_tola.overlay" \
+  --mode bake --size 512 --output "$scratch/baked.glb" --quiet
+# A box of letters onto itself, and onto itself without texture coordinates.
+sed '/^vt/d; /^mtllib/d; /^usemtl/d; s#/[0-9]*##g' samples/letters.obj >"$scratch/plain.obj"
+seq 0 "$(($(grep -c '^v ' samples/letters.obj) - 1))" >"$scratch/identity.txt"
+letters() {
+  "$program" transfer samples/letters.obj "$1" --map "$scratch/identity.txt" --quiet \
+    --output "$scratch/letters_$2.glb" "${@:3}"
+}
+letters samples/letters.obj keep
+letters samples/letters.obj baked --mode bake --size 512
+letters "$scratch/plain.obj" atlas --mode bake --size 512
 node tests/gltf/validate.mjs "$scratch"/*.glb
-for name in everything tola baked; do
-  node tests/gltf/view.mjs "$scratch/$name.glb" "$scratch/$name.png"
-done
-node tests/gltf/report.mjs build/dev/crosspatch samples/lira.obj samples/tola.obj "$scratch"
+node tests/gltf/view.mjs "$scratch" "$scratch"/*.glb
+node tests/gltf/view.mjs --letters samples/letters.png "$scratch" "$scratch"/letters_*.glb
+blender -b --factory-startup --python-exit-code 1 --python tests/gltf/blender.py -- \
+  samples/letters.png "$scratch" "$scratch"/*.glb >"$scratch/blender.log" || { cat "$scratch/blender.log"; exit 1; }
+grep -a '^blender: ' "$scratch/blender.log"
+node tests/gltf/report.mjs "$program" samples/lira.obj samples/tola.obj "$scratch"
 echo "all tests passed"

@@ -4,7 +4,7 @@
 #   build  compiler and libraries (openimageio-tools: the CMake files of the library ask for them),
 #          Node.js for npm, three.js
 #   demo   jq, to read the report
-#   test   Chromium, for outside readers of what we write
+#   test   Chromium and Blender, outside readers of what we write
 #   check  clang-format and clang-tidy
 # Asks for nothing when everything is there already; uses sudo only when not root.
 set -euo pipefail
@@ -15,7 +15,7 @@ build=(cmake ninja-build g++
        libtbb-dev libnanoflann-dev libexpected-dev libboost-dev libgtest-dev libgmock-dev
        libbenchmark-dev)
 demo=(jq)
-test=(chromium)
+test=(chromium blender)
 check=(clang-format clang-tidy)
 # Node.js may come from elsewhere than Debian; then its package is not asked for.
 command -v node >/dev/null && command -v npm >/dev/null || build+=(nodejs npm)
