@@ -7,7 +7,7 @@ import { readFileSync } from 'node:fs';
 import { basename } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { area2, clip, cross, dot, Grid, mix, nearestInTriangle, norm, polygonArea, scale, sub } from './geometry.mjs';
-import { imageSize, readMesh, readOverlay, weld } from './mesh_files.mjs';
+import { imageSize, readMesh, readOverlay } from './mesh_files.mjs';
 
 /** Who lies beyond each side of a triangle; a seam counts as nobody when `same` says so. */
 function neighbours(triangles, vertex, same = () => true) {
@@ -21,8 +21,8 @@ function neighbours(triangles, vertex, same = () => true) {
 }
 
 /** Neighbours in the source across sides where material and texture coordinates go on. */
-function acrossNoSeam(source, vertex) {
-  return neighbours(source.triangles, vertex, (f, k, g, l) =>
+function acrossNoSeam(source) {
+  return neighbours(source.triangles, source.vertex, (f, k, g, l) =>
     source.material[f] === source.material[g] && source.uvs.every((uv) => {
       const equal = (a, b) => a === b || (a && b && a[0] === b[0] && a[1] === b[1]);
       return equal(uv[3 * f + k], uv[3 * g + (l + 1) % 3]) && equal(uv[3 * f + (k + 1) % 3], uv[3 * g + l]);
@@ -30,12 +30,12 @@ function acrossNoSeam(source, vertex) {
 }
 
 /** Weights of a point of triangle `from` for the corners of triangle `to` that holds it as well. */
-function inTriangle(weights, from, to, mesh, vertex) {
+function inTriangle(weights, from, to, mesh) {
   if (from === to) return weights;
   const found = [0, 0, 0];
   weights.forEach((w, k) => {
     if (w === 0) return;
-    const corner = mesh.triangles[to].findIndex((v) => vertex[v] === vertex[mesh.triangles[from][k]]);
+    const corner = mesh.triangles[to].findIndex((v) => mesh.vertex[v] === mesh.vertex[mesh.triangles[from][k]]);
     if (corner < 0) throw new Error(`overlay: a point of triangle ${from} is no point of triangle ${to}`);
     found[corner] += w;
   });
@@ -68,8 +68,7 @@ export function judge({ source, target, overlay, out, textures, tolerance = 0.5 
   const fault = (text) => faults.push(text);
   const extent = target.places.flat().reduce((most, x) => Math.max(most, Math.abs(x)), 0);
   const slack = 2 ** -22 * extent;  // places are stored in single precision: 2^-24, twice, twice over
-  const sourceVertex = weld(source.places), targetVertex = weld(target.places);
-  const beyond = acrossNoSeam(source, sourceVertex);
+  const beyond = acrossNoSeam(source);
   const corners = (mesh, f) => mesh.triangles[f].map((v) => mesh.places[v]);
   const polygons = target.triangles.map(() => []);
   overlay.polygons.forEach((p) => polygons[p.fb].push({
@@ -77,8 +76,8 @@ export function judge({ source, target, overlay, out, textures, tolerance = 0.5 
     corners: p.points.map((i) => {
       const { fa, a, fb, b } = overlay.points[i];
       return {
-        place: mix(inTriangle(b, fb, p.fb, target, targetVertex), corners(target, p.fb)),
-        weights: inTriangle(a, fa, p.fa, source, sourceVertex),
+        place: mix(inTriangle(b, fb, p.fb, target), corners(target, p.fb)),
+        weights: inTriangle(a, fa, p.fa, source),
       };
     }),
   }));
@@ -105,8 +104,9 @@ export function judge({ source, target, overlay, out, textures, tolerance = 0.5 
     const flat = flatten(corners(target, face)), at = places.map(flat);
     const whole = area2(...at);
     covered[face] += whole / 2;
-    // What lies within rounding of a side has no area that can be told from none.
-    const nothing = 2 * slack * at.reduce((sum, p, k) => sum + norm(sub(at[(k + 1) % 3], p)), 0);
+    // What lies within rounding of its rim has no area that can be told from none.
+    const rounding = (rim) => 2 * slack * rim.reduce((sum, p, k) => sum + norm(sub(rim[(k + 1) % rim.length], p)), 0);
+    const nothing = rounding(at);
     const cells = polygons[face].map((polygon) => {
       let part = polygon.corners.map((c) => ({ at: flat(c.place), weights: c.weights }));
       for (let k = 0; k < 3 && part.length > 2; ++k) part = clip(part, (p) => area2(at[k], at[(k + 1) % 3], p));
@@ -138,7 +138,8 @@ export function judge({ source, target, overlay, out, textures, tolerance = 0.5 
     if (!exact) ++wrong;
     if (whole / 2 <= nothing) return;
     // The error is linear in a cell: its corners tell the largest.
-    for (const { fa: f, part } of own)
+    for (const { fa: f, part, area } of own) {
+      if (area <= rounding(part.map((c) => c.at))) continue;
       for (const { at: p, weights } of part) {
         const inside = [0, 1, 2].map((k) => Math.max(0, area2(at[(k + 1) % 3], at[(k + 2) % 3], p) / whole));
         const sum = inside.reduce((a, b) => a + b);
@@ -146,6 +147,7 @@ export function judge({ source, target, overlay, out, textures, tolerance = 0.5 
           worst = Math.max(worst, strays(set, mix(scale(inside, 1 / sum), uvOf(set)), f, weights));
         });
       }
+    }
     source.uvs.forEach((uv, set) => {
       const there = uvOf(set), size = area2(...there);
       const longest = Math.max(...there.map((p, k) => norm(sub(there[(k + 1) % 3], p))));
@@ -156,15 +158,15 @@ export function judge({ source, target, overlay, out, textures, tolerance = 0.5 
     });
   });
 
-  const outVertex = weld(out.places), sides = new Set();
+  const sides = new Set();
   let twice = 0;
   for (const t of out.triangles)
     t.forEach((v, k) => {
-      const side = `${outVertex[v]} ${outVertex[t[(k + 1) % 3]]}`;
+      const side = `${out.vertex[v]} ${out.vertex[t[(k + 1) % 3]]}`;
       if (sides.has(side)) ++twice;
       sides.add(side);
     });
-  const around = neighbours(target.triangles, targetVertex);
+  const around = neighbours(target.triangles, target.vertex);
   let uncovered = 0, leftOut = 0;
   covered.forEach((area, f) => {
     const triangle = corners(target, f);

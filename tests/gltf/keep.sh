@@ -25,6 +25,13 @@ node tests/gltf/keep_test.mjs samples/letters.obj samples/letters.obj "$folder/l
 rm "$folder/letters.glb"  # turned: its letters stand on other sides
 keep lira_tola samples/lira.obj samples/tola.obj
 keep bodo_lira samples/bodo.obj samples/lira.obj
+
+# The same surface, finer, by the map that leaves every point where it is.
+node tests/gltf/refine.mjs samples/lira.obj "$folder/finer.obj"
+seq 0 "$(($(grep -c '^v ' samples/lira.obj) - 1))" >"$folder/in_place.txt"
+"$program" transfer samples/lira.obj "$folder/finer.obj" --map "$folder/in_place.txt" --output "$folder/finer.glb" --quiet
+node tests/gltf/same_surface.mjs samples/lira.obj "$folder/finer.glb" 20000
+
 keep spot_remeshed "$data/textured/spot.obj" "$data/textured/spot_remeshed_noUV.obj"
 keep spot_399 "$data/textured/spot.obj" "$data/shrec07/399.off"
 keep fox_383 "$data/textured/Fox.glb" "$data/shrec07/383.off"

@@ -3,10 +3,9 @@
 // of them passes, or fails for another reason.
 import { norm, sub } from './geometry.mjs';
 import { judge, readCase } from './keep.mjs';
-import { weld } from './mesh_files.mjs';
 
 const files = readCase(process.argv.slice(2, 6));
-const vertex = weld(files.out.places);
+const { vertex } = files.out;
 const uvs = files.out.uvs[0];
 const place = (v) => files.out.places[v];
 const equal = (a, b) => a[0] === b[0] && a[1] === b[1];

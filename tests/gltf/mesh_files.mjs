@@ -1,17 +1,22 @@
 // Mesh files as plain arrays, read with no code of the program's.
 //
 // A mesh is { places: [[x, y, z]], triangles: [[i, j, k]], uvs: [set][corner] = [u, v] | undefined,
-// material: [name of each triangle], images: [{ name, bytes }], image: { material: index } }.
+// material: [name of each triangle], images: [{ name, bytes }], image: { material: index },
+// vertex: [number of each place] }. Places of a glTF file that are equal are one vertex: it has one
+// for each texture coordinate. Those of other files are vertices as they are.
 // Corner 3 t + k belongs to triangle t. UVs are those of glTF: v grows downwards.
 import { readFileSync } from 'node:fs';
 import { dirname, extname, join } from 'node:path';
 
 export function readMesh(path) {
   const kind = extname(path).toLowerCase();
-  if (kind === '.glb') return readGlb(readFileSync(path));
-  if (kind === '.obj') return readObj(path);
-  if (kind === '.off') return readOff(path);
-  throw new Error(`${path}: neither GLB, OBJ nor OFF`);
+  if (!['.glb', '.obj', '.off'].includes(kind)) throw new Error(`${path}: neither GLB, OBJ nor OFF`);
+  if (kind !== '.glb') {
+    const mesh = kind === '.obj' ? readObj(path) : readOff(path);
+    return { ...mesh, vertex: mesh.places.map((_, i) => i) };
+  }
+  const mesh = readGlb(readFileSync(path));
+  return { ...mesh, vertex: weld(mesh.places) };
 }
 
 /** Splits a GLB into its header and its binary chunk. */
@@ -147,7 +152,7 @@ export function imageSize(bytes) {
 }
 
 /** The number of the first vertex at the same place, for every vertex. */
-export function weld(places) {
+function weld(places) {
   const first = new Map();
   return places.map((p, i) => {
     const key = p.join(' ');
