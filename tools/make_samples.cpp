@@ -1,11 +1,16 @@
-// make_samples FOLDER: writes the sample meshes and textures. The same bytes on every run.
+// make_samples FOLDER [TIMES TEXELS]: writes the sample meshes and textures. The same bytes on
+// every run. TIMES as many triangles, TEXELS a side of the textures.
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
+#include <charconv>
+#include <cmath>
+#include <cstring>
 #include <fstream>
 #include <map>
+#include <optional>
 
 #include "core/index.hpp"
 #include "tools/image_io.hpp"
@@ -21,7 +26,11 @@ struct Sample {
   const CoatColors* coat = nullptr;
 };
 
-constexpr int kTextureSize = 512;
+/// How fine the samples are made.
+struct Detail {
+  int times = 1;  ///< as many triangles as those in samples/
+  int texels = 512;
+};
 
 /// Four decimals: a tenth of a millimetre on a creature two metres long.
 std::string vertex_lines(const TriangleMesh& mesh) {
@@ -96,36 +105,53 @@ Status write_letters(const std::string& folder) {
   return write_text(folder + "/letters.png", std::string(png->begin(), png->end()));
 }
 
-Status write_sample(const std::string& folder, const Sample& sample) {
+Status write_sample(const std::string& folder, const Sample& sample, const Detail& detail) {
   const std::string& name = sample.creature.name;
   const std::string stem = folder + "/" + name;
-  const auto mesh = skin_mesh(sample.creature, sample.edge);
+  const auto mesh = skin_mesh(sample.creature, sample.edge / std::sqrt(detail.times));
   if (!mesh) return tl::unexpected(mesh.error());
   if (sample.coat == nullptr) return write_text(stem + ".obj", plain_obj(*mesh));
-  const Atlas atlas = make_atlas(sample.creature, *mesh, kTextureSize);
+  const Atlas atlas = make_atlas(sample.creature, *mesh, detail.texels);
   if (Status s = write_text(stem + ".obj", textured_obj(name, *mesh, atlas)); !s) return s;
   if (Status s = write_material(folder, name, "coat"); !s) return s;
   return write_png(stem + ".png", paint_coat(sample.creature, *sample.coat, *mesh, atlas));
 }
 
-Status write_all(const std::string& folder) {
+Status write_all(const std::string& folder, const Detail& detail) {
   const CoatColors lira = lira_colors(), bodo = bodo_colors();
   for (const Sample& sample : {Sample{make_lira(), 0.043, &lira},
                                Sample{make_bodo(), 0.050, &bodo},
                                Sample{make_tola(), 0.048, nullptr}})
-    if (Status s = write_sample(folder, sample); !s) return s;
+    if (Status s = write_sample(folder, sample, detail); !s) return s;
   return write_letters(folder);
+}
+
+/// A whole number from 1 to `most`.
+std::optional<int> parse_count(const char* text, int most) {
+  int value = 0;
+  const char* end = text + std::strlen(text);
+  const auto parsed = std::from_chars(text, end, value);
+  if (parsed.ec != std::errc() || parsed.ptr != end || value < 1 || value > most)
+    return std::nullopt;
+  return value;
 }
 
 }  // namespace
 }  // namespace crosspatch
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    fmt::print(stderr, "usage: make_samples FOLDER\n");
+  constexpr int kMostTimes = 100, kMostTexels = 16384;
+  const bool detailed = argc == 4;
+  const auto times = detailed ? crosspatch::parse_count(argv[2], kMostTimes) : 1;
+  const auto texels = detailed ? crosspatch::parse_count(argv[3], kMostTexels) : 512;
+  if ((argc != 2 && !detailed) || !times || !texels) {
+    fmt::print(stderr,
+               "usage: make_samples FOLDER [TIMES TEXELS], up to {} and {}\n",
+               kMostTimes,
+               kMostTexels);
     return 2;
   }
-  if (const crosspatch::Status s = crosspatch::write_all(argv[1]); !s) {
+  if (const crosspatch::Status s = crosspatch::write_all(argv[1], {*times, *texels}); !s) {
     fmt::print(stderr, "make_samples: {}\n", s.error().message);
     return 5;
   }

@@ -113,12 +113,17 @@ class CellGrid {
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
 
-  /// Whether `other`, moved by (x, y), meets a cell that is set here.
-  [[nodiscard]] bool meets(const CellGrid& other, int x, int y) const {
-    for (int row = 0; row < other.height_; ++row)
-      for (int i = 0; i < other.words_ - 1; ++i)
-        if ((other.bits_[idx(row * other.words_ + i)] & word(x + 64 * i, y + row)) != 0)
+  /// Whether `other`, moved by (x, y), meets a cell that is set here. Looks at row `first` of it
+  /// first, and leaves there the row that meets one: the next place fails by the same row as a
+  /// rule.
+  [[nodiscard]] bool meets(const CellGrid& other, int x, int y, int& first) const {
+    for (int i = 0, row = first; i < other.height_;
+         ++i, row = row + 1 < other.height_ ? row + 1 : 0)
+      for (int k = 0; k < other.words_ - 1; ++k)
+        if ((other.bits_[idx(row * other.words_ + k)] & word(x + 64 * k, y + row)) != 0) {
+          first = row;
           return true;
+        }
     return false;
   }
 
@@ -176,9 +181,10 @@ struct Place {
 
 /// The lowest free place of a shape among those whose top ends below `limit`, leftmost there.
 std::optional<Place> lowest(const CellGrid& taken, const CellGrid& shape, int side, int limit) {
+  int first = 0;
   for (int y = 0; y + shape.height() <= std::min(side, limit); ++y)
     for (int x = 0; x + shape.width() <= side; ++x)
-      if (!taken.meets(shape, x, y)) return Place{x, y};
+      if (!taken.meets(shape, x, y, first)) return Place{x, y};
   return std::nullopt;
 }
 

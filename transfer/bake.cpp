@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include <Eigen/LU>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <ctime>
 #include <optional>
 #include <set>
 
@@ -13,7 +14,7 @@
 #include "transfer/assemble.hpp"
 #include "transfer/atlas.hpp"
 #include "transfer/bake_canvas.hpp"
-#include "transfer/overlay_mesh.hpp"
+#include "transfer/carried.hpp"
 #include "transfer/seam_error.hpp"
 #include "transfer/source_look.hpp"
 #include "transfer/tangents.hpp"
@@ -26,38 +27,18 @@ namespace {
 // two triangles.
 constexpr double kMargin = 1e-4;
 
-/// The overlay, with the places of its triangles in the image.
-struct Carried {
-  int size = 0;  ///< of the image, texels a side
-  TexturedMesh mesh;
-  std::vector<std::array<Vector2d, 3>> texels;  ///< per triangle
-  std::vector<Vector3d> target_bary;            ///< per corner, in its target face
-};
+/// Adds the CPU seconds of its life to a sum.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& sum) : sum_(sum), begun_(std::clock()) {}
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+  ~Stopwatch() { sum_ += static_cast<double>(std::clock() - begun_) / CLOCKS_PER_SEC; }
 
-Carried lay_over(const AttributedMesh& source,
-                 const AttributedMesh& target,
-                 const SourceAttributes& attributes,
-                 const OverlayMesh& overlay,
-                 const Unwrap& unwrap,
-                 int size) {
-  Carried carried;
-  carried.size = size;
-  carried.mesh = assemble(source, target, attributes, overlay);
-  carried.texels.reserve(overlay.triangles.size());
-  carried.target_bary.reserve(3 * overlay.triangles.size());
-  for (const OverlayMesh::Triangle& triangle : overlay.triangles) {
-    const std::array<Vector2d, 3> face = in_texels(unwrap, triangle.target_face, size);
-    std::array<Vector2d, 3> corner;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const SurfacePoint& p = overlay.points[idx(overlay.wedge_point[idx(triangle.wedge[k])])];
-      const Vector3d bary = in_face(target.prepared.mesh, p, triangle.target_face).bary;
-      corner[k] = bary[0] * face[0] + bary[1] * face[1] + bary[2] * face[2];
-      carried.target_bary.push_back(bary);
-    }
-    carried.texels.push_back(corner);
-  }
-  return carried;
-}
+ private:
+  double& sum_;
+  std::clock_t begun_;
+};
 
 /// The target as it will be written: its own triangles over the unwrap, in one material.
 TexturedMesh plain_target(const AttributedMesh& target, const Unwrap& unwrap) {
@@ -74,10 +55,12 @@ TexturedMesh plain_target(const AttributedMesh& target, const Unwrap& unwrap) {
   return plain;
 }
 
-/// Calls paint(triangle, x, y, bary) for the texels of all triangles, in bands of rows side by
-/// side: where two claim a texel the later one has it, whatever the number of threads.
+/// Calls paint(triangle, rows) for all triangles, in bands of rows side by side, from left to right
+/// in each, so that neighbours in the image follow each other and find the texels of both images
+/// still in the cache. Where two claim a texel the later one has it, whatever the number of
+/// threads.
 template <class Paint>
-void for_each_carried_texel(const Carried& carried, int size, Paint paint) {
+void for_each_in_bands(const Carried& carried, int size, Paint paint) {
   constexpr int kRows = 32;
   const int bands = (size + kRows - 1) / kRows;
   std::vector<std::vector<int>> of_band(idx(bands));
@@ -88,60 +71,59 @@ void for_each_carried_texel(const Carried& carried, int size, Paint paint) {
     const int last = std::clamp(static_cast<int>(high + 1) / kRows, 0, bands - 1);
     for (int b = first; b <= last; ++b) of_band[idx(b)].push_back(static_cast<int>(t));
   }
+  const auto left = [&](int t) {
+    const auto& c = carried.texels[idx(t)];
+    return std::min({c[0][0], c[1][0], c[2][0]});
+  };
   tbb::parallel_for(0, bands, [&](int b) {
-    for (const int t : of_band[idx(b)])
+    std::vector<std::pair<float, int>> order;
+    order.reserve(of_band[idx(b)].size());
+    for (const int t : of_band[idx(b)]) order.emplace_back(static_cast<float>(left(t)), t);
+    std::sort(order.begin(), order.end());
+    for (const auto& [x, t] : order)
       paint(t, std::array<int, 2>{b * kRows, std::min(size, (b + 1) * kRows)});
   });
-}
-
-void put(BakeCanvas& canvas, int x, int y, const Eigen::Array4f& value) {
-  const std::size_t texel = canvas.texel(x, y);
-  for (int k = 0; k < 4; ++k)
-    canvas.rgba[4 * texel + idx(k)] =
-        static_cast<std::uint16_t>(std::clamp(value[k], 0.0F, 1.0F) * 65535 + 0.5F);
-  canvas.state[texel] = kFilled;
-}
-
-Vector3d clamped(const Vector3d& bary) {
-  const Vector3d inside = bary.cwiseMax(0.0);
-  return inside / inside.sum();
 }
 
 /// Faces that are too small for any texel's centre give their value to the texel they lie in.
 void paint_small_faces(BakeCanvas& canvas,
                        const Carried& carried,
                        const SourceLook& look,
-                       const Unwrap& unwrap) {
-  std::vector<bool> small(unwrap.uv.size() / 3);
-  for (int f = 0; f < static_cast<int>(small.size()); ++f) {
-    small[idx(f)] = true;
-    for_each_texel(in_texels(unwrap, f, canvas.size),
-                   kMargin,
-                   {0, canvas.size},
-                   canvas.size,
-                   [&](int, int, const Vector3d&) { small[idx(f)] = false; });
-  }
+                       const std::vector<std::uint8_t>& has_texels) {
   for (int t = 0; t < carried.mesh.triangle_count(); ++t) {
-    if (!small[idx(carried.mesh.target_face[idx(t)])]) continue;
+    if (has_texels[idx(carried.mesh.target_face[idx(t)])] != 0) continue;
     const auto& c = carried.texels[idx(t)];
     const Vector2d centre = (c[0] + c[1] + c[2]) / 3;
     const int x = std::clamp(static_cast<int>(centre[0]), 0, canvas.size - 1);
     const int y = std::clamp(static_cast<int>(centre[1]), 0, canvas.size - 1);
-    if (canvas.state[canvas.texel(x, y)] == kEmpty)
-      put(canvas, x, y, look.at(look.triangle(t, c), Vector3d::Constant(1.0 / 3)));
+    const std::size_t texel = canvas.texel(x, y);
+    if (canvas.state[texel] != kEmpty) continue;
+    const TexelSpan middle{y, x, x, Vector3d::Constant(1.0 / 3), Vector3d::Zero()};
+    look.paint(look.triangle(t, c), middle, &canvas.rgba[4 * texel]);
+    canvas.state[texel] = kFilled;
   }
 }
 
-BakeCanvas paint(const Carried& carried, const SourceLook& look, const Unwrap& unwrap, int size) {
+BakeCanvas paint(const Carried& carried, const SourceLook& look, int faces, int size) {
   BakeCanvas canvas = make_canvas(size);
-  for_each_carried_texel(carried, size, [&](int t, std::array<int, 2> rows) {
-    const SourceLook::Triangle triangle = look.triangle(t, carried.texels[idx(t)]);
-    for_each_texel(
-        carried.texels[idx(t)], kMargin, rows, size, [&](int x, int y, const Vector3d& b) {
-          put(canvas, x, y, look.at(triangle, clamped(b)));
-        });
+  std::vector<std::uint8_t> has_texels(idx(faces), 0);
+  for_each_in_bands(carried, size, [&](int t, std::array<int, 2> rows) {
+    std::optional<SourceLook::Triangle> triangle;
+    for_each_span(carried.texels[idx(t)], kMargin, rows, size, [&](const TexelSpan& span) {
+      if (!triangle) {
+        triangle = look.triangle(t, carried.texels[idx(t)]);
+        // Bands share faces.
+        std::atomic_ref(has_texels[idx(carried.mesh.target_face[idx(t)])])
+            .store(1, std::memory_order_relaxed);
+      }
+      const std::size_t texel = canvas.texel(span.left, span.y);
+      look.paint(*triangle, span, &canvas.rgba[4 * texel]);
+      std::fill_n(canvas.state.begin() + static_cast<std::ptrdiff_t>(texel),
+                  span.right - span.left + 1,
+                  kFilled);
+    });
   });
-  paint_small_faces(canvas, carried, look, unwrap);
+  paint_small_faces(canvas, carried, look, has_texels);
   return canvas;
 }
 
@@ -149,44 +131,58 @@ BakeCanvas paint(const Carried& carried, const SourceLook& look, const Unwrap& u
 void count_texels(const BakeCanvas& canvas, const Unwrap& unwrap, BakeStatistics& s) {
   long inside = 0, filled = 0;
   for (int f = 0; f < static_cast<int>(unwrap.uv.size()) / 3; ++f)
-    for_each_texel(in_texels(unwrap, f, canvas.size),
-                   0,
-                   {0, canvas.size},
-                   canvas.size,
-                   [&](int x, int y, const Vector3d&) {
-                     ++inside;
-                     filled += canvas.state[canvas.texel(x, y)] == kFilled ? 1 : 0;
-                   });
+    for_each_span(in_texels(unwrap, f, canvas.size),
+                  0,
+                  {0, canvas.size},
+                  canvas.size,
+                  [&](const TexelSpan& span) {
+                    const auto first =
+                        canvas.state.begin() + static_cast<std::ptrdiff_t>(canvas.texel(0, span.y));
+                    inside += span.right - span.left + 1;
+                    filled += std::count(first + span.left, first + span.right + 1, kFilled);
+                  });
   s.texels_filled = inside > 0 ? static_cast<double>(filled) / static_cast<double>(inside) : 1;
   s.used = static_cast<double>(inside) / static_cast<double>(canvas.state.size());
 }
 
-/// The painted canvas as an image: stored values, colour not multiplied by alpha.
-RasterImage finish(const BakeCanvas& canvas, Channel channel, bool has_alpha) {
-  const bool color = channel == Channel::kBaseColor || channel == Channel::kEmissive;
-  const ColorSpace space = color ? ColorSpace::kSrgb : ColorSpace::kLinear;
-  RasterImage image{canvas.size, canvas.size, has_alpha ? 4 : 3, {}};
-  image.values.reserve(canvas.state.size() * idx(image.channels));
+/// Normals of the canvas, of unit length again.
+RasterImage finish_normals(const BakeCanvas& canvas) {
+  RasterImage image{canvas.size, canvas.size, 3, {}};
+  image.values.resize(3 * canvas.state.size());
   for (std::size_t texel = 0; texel < canvas.state.size(); ++texel) {
     const std::uint16_t* p = &canvas.rgba[4 * texel];
-    if (channel == Channel::kNormal) {
-      Vector3d n = Vector3d(p[0], p[1], p[2]) / 65535 * 2 - Vector3d::Ones();
-      n = n.norm() > 1e-6 ? Vector3d(n.normalized()) : Vector3d(Vector3d::UnitZ());
-      // The value 128 of 255 stands for zero, so that a flat map reads back flat.
-      for (int k = 0; k < 3; ++k)
-        image.values.push_back(static_cast<std::uint16_t>(
-            std::lround(std::clamp((n[k] * 127.5 + 127.5) * 257, 0.0, 65535.0))));
-      continue;
-    }
-    const std::uint32_t alpha = has_alpha ? p[3] : 65535;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t plain =
-          alpha == 0 ? p[k] : std::min<std::uint32_t>(65535, (p[k] * 65535U + alpha / 2) / alpha);
-      image.values.push_back(to_stored(static_cast<std::uint16_t>(plain), space));
-    }
-    if (has_alpha) image.values.push_back(static_cast<std::uint16_t>(alpha));
+    Vector3d n = Vector3d(p[0], p[1], p[2]) / 65535 * 2 - Vector3d::Ones();
+    n = n.norm() > 1e-6 ? Vector3d(n.normalized()) : Vector3d(Vector3d::UnitZ());
+    // The value 128 of 255 stands for zero, so that a flat map reads back flat.
+    for (int k = 0; k < 3; ++k)
+      image.values[3 * texel + idx(k)] = static_cast<std::uint16_t>(
+          std::lround(std::clamp((n[k] * 127.5 + 127.5) * 257, 0.0, 65535.0)));
   }
   return image;
+}
+
+/// The painted canvas as an image: stored values, colour not multiplied by alpha.
+RasterImage finish(const BakeCanvas& canvas, bool color, bool has_alpha) {
+  const std::size_t channels = has_alpha ? 4 : 3;
+  const std::uint16_t* srgb = srgb_values();
+  RasterImage image{canvas.size, canvas.size, static_cast<int>(channels), {}};
+  image.values.resize(canvas.state.size() * channels);
+  std::uint16_t* out = image.values.data();
+  for (std::size_t texel = 0; texel < canvas.state.size(); ++texel, out += channels) {
+    const std::uint16_t* p = &canvas.rgba[4 * texel];
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::uint32_t plain = p[k];
+      if (has_alpha && p[3] != 0)
+        plain = std::min<std::uint32_t>(65535, (plain * 65535U + p[3] / 2U) / p[3]);
+      out[k] = color ? srgb[plain] : static_cast<std::uint16_t>(plain);
+    }
+    if (has_alpha) out[3] = p[3];
+  }
+  return image;
+}
+
+bool is_color(Channel channel) {
+  return channel == Channel::kBaseColor || channel == Channel::kEmissive;
 }
 
 const char* name(Channel channel) {
@@ -241,66 +237,6 @@ Material baked_material(const TexturedMesh& mesh, const std::set<int>& used) {
   return baked;
 }
 
-/// Texels per length of the new image over those of the source's base colour image.
-std::array<double, 3> density_ratio(const Carried& carried,
-                                    const SourceAttributes& attributes,
-                                    const std::vector<double>& surface_ratio,
-                                    const OverlayMesh& overlay) {
-  std::vector<std::pair<double, double>> ratios;  // and the area they hold for
-  double total = 0;
-  for (int t = 0; t < carried.mesh.triangle_count(); ++t) {
-    const Material& m = carried.mesh.materials[idx(carried.mesh.material[idx(t)])];
-    const auto& triangle = overlay.triangles[idx(t)];
-    if (!triangle.mapped || m.base_color.image < 0) continue;
-    const int set = m.base_color.uv_set;
-    const Vector2d& scale =
-        attributes.texels[idx((triangle.material + 1) * attributes.uv_sets + set)];
-    std::array<Vector2d, 3> uv;
-    for (std::size_t k = 0; k < 3; ++k)
-      uv[k] = carried.mesh.uv_sets[idx(set)][idx(3 * t) + k].cwiseProduct(scale);
-    const auto& c = carried.texels[idx(t)];
-    const double there = std::abs(doubled_area(uv[0], uv[1], uv[2]));
-    const double here = std::abs(doubled_area(c[0], c[1], c[2]));
-    const double area = surface_ratio[idx(t)];
-    if (!(there > 0) || !(here > 0)) continue;
-    ratios.emplace_back(std::sqrt(here / there), area);
-    total += area;
-  }
-  std::sort(ratios.begin(), ratios.end());
-  std::array<double, 3> result{0, 0, 0};
-  const std::array<double, 3> shares{0.5, 0.05, 0.95};
-  for (std::size_t i = 0; i < 3; ++i) {
-    double sum = 0;
-    for (const auto& [ratio, area] : ratios) {
-      sum += area;
-      result[i] = ratio;
-      if (sum >= shares[i] * total) break;
-    }
-  }
-  return result;
-}
-
-/// Areas of the carried triangles on the target.
-std::vector<double> areas(const TexturedMesh& mesh) {
-  std::vector<double> area;
-  for (int t = 0; t < mesh.triangle_count(); ++t) {
-    const Vector3d a = mesh.positions.row(mesh.triangles(t, 0)).transpose();
-    const Vector3d b = mesh.positions.row(mesh.triangles(t, 1)).transpose();
-    const Vector3d c = mesh.positions.row(mesh.triangles(t, 2)).transpose();
-    area.push_back((b - a).cross(c - a).norm() / 2);
-  }
-  return area;
-}
-
-double coverage(const OverlayMesh& overlay, const std::vector<double>& area) {
-  double mapped = 0, total = 0;
-  for (std::size_t t = 0; t < area.size(); ++t) {
-    total += area[t];
-    if (overlay.triangles[t].mapped) mapped += area[t];
-  }
-  return total > 0 ? mapped / total : 0;
-}
-
 std::vector<Eigen::Vector4d> tangents_at_corners(const TexturedMesh& target,
                                                  const Carried& carried) {
   const std::vector<Eigen::Vector4d> of_face = corner_tangents(target, 0, 0);
@@ -323,20 +259,27 @@ Result<RasterImage> bake_channel(const Carried& carried,
                                  Channel channel,
                                  BakeStatistics& statistics) {
   std::optional<SourceLook> look;
-  if (Result<SourceLook> made = SourceLook::make(carried.mesh, channel); made)
+  BakeSeconds& seconds = statistics.cpu_seconds;
+  {
+    const Stopwatch watch(seconds.decode);
+    Result<SourceLook> made = SourceLook::make(carried.mesh, channel);
+    if (!made) return tl::unexpected(made.error());
     look = std::move(*made);
-  else
-    return tl::unexpected(made.error());
+  }
+  std::optional<Stopwatch> watch(std::in_place, seconds.raster);
   if (channel == Channel::kNormal) look->set_target_tangents(tangents_at_corners(target, carried));
-  BakeCanvas canvas = paint(carried, *look, unwrap, carried.size);
+  BakeCanvas canvas = paint(carried, *look, surface.face_count(), carried.size);
   const bool has_alpha = channel == Channel::kBaseColor && look->has_alpha();
   look.reset();
+  watch.emplace(seconds.measure);
   if (channel == Channel::kBaseColor) count_texels(canvas, unwrap, statistics);
+  watch.emplace(seconds.gutter);
   // What lies across a seam has another tangent frame: gutters of normals are grown smoothly.
   if (channel != Channel::kNormal)
     continue_across_seams(canvas, surface, unwrap, AtlasOptions{.size = carried.size}.padding());
   push_pull(canvas);
-  return finish(canvas, channel, has_alpha);
+  if (channel == Channel::kNormal) return finish_normals(canvas);
+  return finish(canvas, is_color(channel), has_alpha);
 }
 
 }  // namespace
@@ -353,6 +296,7 @@ Result<BakedTexture> bake_texture(const AttributedMesh& source,
   BakedTexture result;
   BakeStatistics& s = result.statistics;
   const TriangleMesh& surface = target.prepared.mesh;
+  std::optional<Stopwatch> watch(std::in_place, s.cpu_seconds.prepare);
   Unwrap unwrap;
   if (Result<Unwrap> own = own_unwrap(target)) {
     s.own_unwrap = true;
@@ -364,28 +308,25 @@ Result<BakedTexture> bake_texture(const AttributedMesh& source,
     s.charts = atlas->charts;
     unwrap = std::move(atlas->unwrap);
   }
-  const SourceAttributes attributes = source_attributes(source, size);
-  const OverlayMesh overlay = make_overlay_mesh(attributes, source.prepared.mesh, surface, map);
-  const Carried carried = lay_over(source, target, attributes, overlay, unwrap, size);
-  s.overlay_triangles = carried.mesh.triangle_count();
-  const std::vector<double> area = areas(carried.mesh);
-  s.coverage = coverage(overlay, area);
-  s.density_ratio = density_ratio(carried, attributes, area, overlay);
-
+  const Carried carried = carry(source, target, map, unwrap, size, s);
   result.mesh = plain_target(target, unwrap);
   const std::set<int> used(carried.mesh.material.begin(), carried.mesh.material.end());
   Material material = baked_material(carried.mesh, used);
   constexpr int kClamp = 33071;
+  watch.reset();
   for (const Channel channel : kChannels) {
     if (!is_needed(carried.mesh, used, channel)) continue;
     const Result<RasterImage> image =
         bake_channel(carried, result.mesh, surface, unwrap, channel, s);
     if (!image) return tl::unexpected(image.error());
+    watch.emplace(s.cpu_seconds.measure);
     if (channel == Channel::kBaseColor) s.seam_error = seam_error(*image, surface, unwrap);
+    watch.emplace(s.cpu_seconds.encode);
     ImageEncoding encoding = options.encoding;
-    encoding.is_color = channel == Channel::kBaseColor || channel == Channel::kEmissive;
+    encoding.is_color = is_color(channel);
     Result<std::vector<unsigned char>> bytes = encode_image_file(*image, encoding);
     if (!bytes) return tl::unexpected(bytes.error());
+    watch.reset();
     TextureRef& ref = texture_of(material, channel);
     ref.image = static_cast<int>(result.mesh.images.size());
     ref.wrap_s = ref.wrap_t = kClamp;

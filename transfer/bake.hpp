@@ -20,6 +20,16 @@ struct BakeOptions {
 /// Mip levels at which seams are looked at.
 constexpr int kSeamLevels = 5;
 
+/// CPU seconds of the whole process, stage by stage.
+struct BakeSeconds {
+  double prepare = 0;  ///< unwrap and overlay
+  double decode = 0;   ///< images of the source
+  double raster = 0;
+  double gutter = 0;
+  double measure = 0;  ///< texels counted, seams compared
+  double encode = 0;   ///< images made
+};
+
 struct BakeStatistics {
   bool own_unwrap = false;    ///< the target's own texture coordinates were used
   std::string why_not_own{};  ///< if not
@@ -34,6 +44,7 @@ struct BakeStatistics {
   /// Difference of the base colour on the two sides of seams, in 255ths, at 95 % of their length,
   /// per mip level.
   std::array<double, kSeamLevels> seam_error{};
+  BakeSeconds cpu_seconds{};
 };
 
 struct BakedTexture {

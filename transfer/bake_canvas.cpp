@@ -2,36 +2,30 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <optional>
 
 #include "core/index.hpp"
+#include "transfer/four_values.hpp"
 #include "transfer/texel_raster.hpp"
 
 namespace crosspatch {
 namespace {
 
-using Eigen::Array4f;
-
-Array4f load(const BakeCanvas& canvas, std::size_t texel) {
-  const std::uint16_t* p = &canvas.rgba[4 * texel];
-  return {static_cast<float>(p[0]),
-          static_cast<float>(p[1]),
-          static_cast<float>(p[2]),
-          static_cast<float>(p[3])};
+FourFloats load(const BakeCanvas& canvas, std::size_t texel) {
+  return load_four(&canvas.rgba[4 * texel]);
 }
 
-void store(BakeCanvas& canvas, std::size_t texel, const Array4f& value) {
-  for (int k = 0; k < 4; ++k)
-    canvas.rgba[4 * texel + idx(k)] =
-        static_cast<std::uint16_t>(std::clamp(value[k] + 0.5F, 0.0F, 65535.0F));
+void store(BakeCanvas& canvas, std::size_t texel, const FourFloats& value) {
+  store_four(value, &canvas.rgba[4 * texel]);
 }
 
 /// The bilinear value at `p` (texels), of those of the four texels around it that were painted
 /// through the map.
-std::optional<Array4f> painted_value(const BakeCanvas& canvas, const Vector2d& p) {
+std::optional<FourFloats> painted_value(const BakeCanvas& canvas, const Vector2d& p) {
   const double x = p[0] - 0.5, y = p[1] - 0.5;
   const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
-  Array4f sum = Array4f::Zero();
+  FourFloats sum{0, 0, 0, 0};
   double weight = 0;
   for (int v = j; v < j + 2; ++v)
     for (int u = i; u < i + 2; ++u) {
@@ -44,7 +38,7 @@ std::optional<Array4f> painted_value(const BakeCanvas& canvas, const Vector2d& p
     }
   constexpr double kSure = 1e-3;
   if (weight < kSure) return std::nullopt;
-  return Array4f(sum / static_cast<float>(weight));
+  return sum / static_cast<float>(weight);
 }
 
 Eigen::Matrix2d columns(const Vector2d& a, const Vector2d& b) {
@@ -73,38 +67,58 @@ class AcrossSeam {
   [[nodiscard]] bool exists() const { return exists_; }
 
   /// The texel that shows the same place, or nothing where the surface ends before.
-  [[nodiscard]] std::optional<Vector2d> operator()(const Vector2d& beyond) const {
+  [[nodiscard]] std::optional<Vector2d> operator()(const Vector2d& beyond) {
     const Vector2d p = to_plane_ * (beyond - start_);
     constexpr int kMostFaces = 256;  // a gutter is narrow; finer meshes are not worth the walk
-    int h = mesh_.twin[idx(halfedge_)];
-    // The half-edge h runs from `from` to `to` in the plane, its face on the left.
-    Vector2d from(length_, 0), to(0, 0);
-    for (int i = 0; i < kMostFaces && h >= 0; ++i) {
-      const Vector2d tip = third(from,
-                                 to,
-                                 mesh_.position(mesh_.from(h)),
-                                 mesh_.position(mesh_.to(h)),
-                                 mesh_.position(mesh_.tip(h)));
-      const double area = doubled_area(from, to, tip);
-      if (!(area > 0)) return std::nullopt;
+    if (faces_.empty()) unfold(mesh_.twin[idx(halfedge_)], {length_, 0}, {0, 0});
+    int face = 0;
+    for (int i = 0; i < kMostFaces && face >= 0; ++i) {
+      const Unfolded& f = faces_[idx(face)];
+      if (!(f.area > 0)) return std::nullopt;
       // Weights of the corners that h leaves and reaches; the third closes the sum.
-      const double at_from = doubled_area(to, tip, p) / area;
-      const double at_to = doubled_area(tip, from, p) / area;
+      const double at_from = doubled_area(f.to, f.tip, p) / f.area;
+      const double at_to = doubled_area(f.tip, f.from, p) / f.area;
       if (at_from >= 0 && at_to >= 0)
-        return Vector2d(at_from * texel(h) + at_to * texel(next(h)) +
-                        (1 - at_from - at_to) * texel(prev(h)));
-      if (at_from < at_to) {
-        h = mesh_.twin[idx(next(h))];
-        from = tip;
-      } else {
-        h = mesh_.twin[idx(prev(h))];
-        to = tip;
-      }
+        return Vector2d(at_from * texel(f.h) + at_to * texel(next(f.h)) +
+                        (1 - at_from - at_to) * texel(prev(f.h)));
+      face = neighbour(face, at_from < at_to ? 0 : 1);
     }
     return std::nullopt;
   }
 
  private:
+  static constexpr int kUnknown = -2, kNone = -1;
+
+  /// A face in the plane: on the left of its half-edge h, which runs from `from` to `to`.
+  struct Unfolded {
+    int h = kNone;
+    Vector2d from, to, tip;
+    double area = 0;
+    std::array<int, 2> beyond{kUnknown, kUnknown};  ///< over the sides to and from the tip
+  };
+
+  int unfold(int h, const Vector2d& from, const Vector2d& to) {
+    if (h < 0) return kNone;
+    const Vector2d tip = third(from,
+                               to,
+                               mesh_.position(mesh_.from(h)),
+                               mesh_.position(mesh_.to(h)),
+                               mesh_.position(mesh_.tip(h)));
+    faces_.push_back({h, from, to, tip, doubled_area(from, to, tip)});
+    return static_cast<int>(faces_.size()) - 1;
+  }
+
+  /// The face over side 0 (from `to` to the tip) or 1 (from the tip to `from`), or kNone.
+  int neighbour(int face, std::size_t side) {
+    if (faces_[idx(face)].beyond[side] == kUnknown) {
+      const Unfolded f = faces_[idx(face)];
+      const int found = side == 0 ? unfold(mesh_.twin[idx(next(f.h))], f.tip, f.to)
+                                  : unfold(mesh_.twin[idx(prev(f.h))], f.from, f.tip);
+      faces_[idx(face)].beyond[side] = found;
+    }
+    return faces_[idx(face)].beyond[side];
+  }
+
   [[nodiscard]] Vector2d texel(int corner) const { return unwrap_.uv[idx(corner)] * size_; }
 
   /// The corner c of the triangle (a, b, c) laid flat on the left of the segment from p to q.
@@ -127,17 +141,87 @@ class AcrossSeam {
   int halfedge_;
   double length_ = 0;
   bool exists_ = false;
+  std::vector<Unfolded> faces_;  ///< those that were asked for, the one across the seam first
   Vector2d start_{0, 0};
   Eigen::Matrix2d to_plane_ = Eigen::Matrix2d::Identity();
 };
 
-/// Mean of the known texels of a 2 x 2 block.
-struct Mean {
-  Array4f value = Array4f::Zero();
-  bool known = false;
-};
+/// Calls visit(h, texel, p, distance) for the texels that were not painted through the map and
+/// whose centres p lie beside a seam h, outside of its face, up to `reach` texels from it; the
+/// distance is in 254ths of that.
+template <class Visit>
+void for_each_gutter_texel(const BakeCanvas& canvas,
+                           const TriangleMesh& mesh,
+                           const Unwrap& unwrap,
+                           int reach,
+                           Visit visit) {
+  const int size = canvas.size;
+  for (int h = 0; h < mesh.halfedge_count(); ++h) {
+    if (mesh.twin[idx(h)] < 0 || is_joined(mesh, unwrap, h)) continue;
+    const Vector2d a = unwrap.uv[idx(h)] * size, b = unwrap.uv[idx(next(h))] * size;
+    const Vector2d tip = unwrap.uv[idx(prev(h))] * size;
+    const double length = (b - a).norm();
+    if (!(length > 0)) continue;
+    const Vector2d along = (b - a) / length;
+    Vector2d out(-along[1], along[0]);
+    if (out.dot(tip - a) > 0) out = -out;
+    const auto look = [&](const TexelSpan& span) {
+      const Vector2d left = Vector2d(span.left + 0.5, span.y + 0.5) - a;
+      double place = along.dot(left), away = out.dot(left);
+      std::size_t texel = canvas.texel(span.left, span.y);
+      for (int x = span.left; x <= span.right; ++x, ++texel, place += along[0], away += out[0]) {
+        if (canvas.state[texel] == kFilled) continue;
+        const double beside = place - std::clamp(place, 0.0, length);
+        const double square = away * away + beside * beside;
+        if (square <= reach * reach)
+          visit(h,
+                texel,
+                Vector2d(x + 0.5, span.y + 0.5),
+                static_cast<std::uint8_t>(std::sqrt(square) * (254.0 / reach)));
+      }
+    };
+    // Wider than the seam: where the outline turns, gutters would gape.
+    const std::array<Vector2d, 4> strip{
+        a - along * reach, b + along * reach, b + (along + out) * reach, a + (out - along) * reach};
+    for_each_span({strip[0], strip[1], strip[2]}, 1e-3, {0, size}, size, look);
+    for_each_span({strip[0], strip[2], strip[3]}, 1e-3, {0, size}, size, look);
+  }
+}
 
-using Means = std::vector<Mean>;
+/// Means of the texels that are not empty in blocks of 2 x 2.
+BakeCanvas halved(const BakeCanvas& fine) {
+  BakeCanvas coarse = make_canvas((fine.size + 1) / 2);
+  for (int y = 0; y < coarse.size; ++y)
+    for (int x = 0; x < coarse.size; ++x) {
+      FourFloats sum{0, 0, 0, 0};
+      int count = 0;
+      for (int j = 2 * y; j < std::min(fine.size, 2 * y + 2); ++j)
+        for (int i = 2 * x; i < std::min(fine.size, 2 * x + 2); ++i) {
+          const std::size_t texel = fine.texel(i, j);
+          if (fine.state[texel] == kEmpty) continue;
+          sum += load(fine, texel);
+          ++count;
+        }
+      if (count == 0) continue;
+      store(coarse, coarse.texel(x, y), sum / static_cast<float>(count));
+      coarse.state[coarse.texel(x, y)] = kFilled;
+    }
+  return coarse;
+}
+
+/// The value of a canvas at the centre of texel (x, y) of one with twice the side.
+FourFloats smooth(const BakeCanvas& coarse, int x, int y) {
+  // Centres lie a quarter of a coarse texel beside the centre of theirs.
+  const int i = (x - 1) >> 1, j = (y - 1) >> 1;
+  const float s = x % 2 == 0 ? 0.75F : 0.25F, t = y % 2 == 0 ? 0.75F : 0.25F;
+  const auto at = [&](int column, int row) {
+    return load(
+        coarse,
+        coarse.texel(std::clamp(column, 0, coarse.size - 1), std::clamp(row, 0, coarse.size - 1)));
+  };
+  return (at(i, j) * (1 - s) + at(i + 1, j) * s) * (1 - t) +
+         (at(i, j + 1) * (1 - s) + at(i + 1, j + 1) * s) * t;
+}
 
 }  // namespace
 
@@ -151,101 +235,43 @@ void continue_across_seams(BakeCanvas& canvas,
                            const TriangleMesh& mesh,
                            const Unwrap& unwrap,
                            int reach) {
-  const int size = canvas.size;
-  std::vector<std::uint8_t> nearest(canvas.state.size(), 255);
-  for (int h = 0; h < mesh.halfedge_count(); ++h) {
-    if (mesh.twin[idx(h)] < 0 || is_joined(mesh, unwrap, h)) continue;
-    const AcrossSeam across(mesh, unwrap, size, h);
-    if (!across.exists()) continue;
-    const Vector2d a = unwrap.uv[idx(h)] * size, b = unwrap.uv[idx(next(h))] * size;
-    const Vector2d tip = unwrap.uv[idx(prev(h))] * size;
-    Vector2d out = Vector2d(-(b - a)[1], (b - a)[0]).normalized();
-    if (out.dot(tip - a) > 0) out = -out;
-    const auto paint = [&](int x, int y, const Vector3d&) {
-      const std::size_t texel = canvas.texel(x, y);
-      if (canvas.state[texel] == kFilled) return;
-      const Vector2d p(x + 0.5, y + 0.5);
-      const auto distance =
-          static_cast<std::uint8_t>(std::clamp(out.dot(p - a) / reach, 0.0, 1.0) * 254);
-      if (distance >= nearest[texel]) return;
-      const std::optional<Vector2d> there = across(p);
-      const auto value = there ? painted_value(canvas, *there) : std::nullopt;
-      if (!value) return;
-      nearest[texel] = distance;
-      store(canvas, texel, *value);
-      canvas.state[texel] = kContinued;
-    };
-    // A little wider than the seam: corners of the outline have gutters too.
-    const Vector2d along = (b - a).normalized() * 0.5;
-    const std::array<Vector2d, 4> strip{
-        a - along, b + along, b + along + out * reach, a - along + out * reach};
-    for_each_texel({strip[0], strip[1], strip[2]}, 1e-3, {0, size}, size, paint);
-    for_each_texel({strip[0], strip[2], strip[3]}, 1e-3, {0, size}, size, paint);
-  }
+  // Which seam is nearest first, as to unfold the surface takes longer than to measure.
+  constexpr std::uint8_t kFar = 255;
+  std::vector<std::uint8_t> nearest(canvas.state.size(), kFar);
+  for_each_gutter_texel(
+      canvas, mesh, unwrap, reach, [&](int, std::size_t texel, const Vector2d&, std::uint8_t d) {
+        nearest[texel] = std::min(nearest[texel], d);
+      });
+  std::optional<AcrossSeam> across;
+  int halfedge = -1;
+  for_each_gutter_texel(canvas,
+                        mesh,
+                        unwrap,
+                        reach,
+                        [&](int h, std::size_t texel, const Vector2d& p, std::uint8_t distance) {
+                          if (distance > nearest[texel] || canvas.state[texel] != kEmpty) return;
+                          if (h != halfedge)
+                            across.emplace(mesh, unwrap, canvas.size, halfedge = h);
+                          if (!across->exists()) return;
+                          const std::optional<Vector2d> there = (*across)(p);
+                          const auto value = there ? painted_value(canvas, *there) : std::nullopt;
+                          if (!value) return;
+                          store(canvas, texel, *value);
+                          canvas.state[texel] = kContinued;
+                        });
 }
 
 void push_pull(BakeCanvas& canvas) {
-  if (std::all_of(
-          canvas.state.begin(), canvas.state.end(), [](std::uint8_t s) { return s == kEmpty; }))
+  const auto is_empty = [](std::uint8_t s) { return s == kEmpty; };
+  if (std::none_of(canvas.state.begin(), canvas.state.end(), is_empty) ||
+      std::all_of(canvas.state.begin(), canvas.state.end(), is_empty))
     return;
-  std::vector<Means> levels;
-  std::vector<int> sizes;
-  const auto halve = [](int size, auto&& known, auto&& value) {
-    const int half = (size + 1) / 2;
-    Means means(idx(half) * idx(half));
-    for (int y = 0; y < half; ++y)
-      for (int x = 0; x < half; ++x) {
-        Mean& mean = means[idx(y) * idx(half) + idx(x)];
-        int count = 0;
-        for (int j = 2 * y; j < std::min(size, 2 * y + 2); ++j)
-          for (int i = 2 * x; i < std::min(size, 2 * x + 2); ++i) {
-            const std::size_t texel = idx(j) * idx(size) + idx(i);
-            if (!known(texel)) continue;
-            mean.value += value(texel);
-            ++count;
-          }
-        mean.known = count > 0;
-        if (count > 0) mean.value /= static_cast<float>(count);
-      }
-    return means;
-  };
-  sizes.push_back((canvas.size + 1) / 2);
-  levels.push_back(halve(
-      canvas.size,
-      [&](std::size_t t) { return canvas.state[t] != kEmpty; },
-      [&](std::size_t t) { return load(canvas, t); }));
-  while (sizes.back() > 1) {
-    const Means& fine = levels.back();
-    Means coarse = halve(
-        sizes.back(),
-        [&](std::size_t t) { return fine[t].known; },
-        [&](std::size_t t) { return fine[t].value; });
-    sizes.push_back((sizes.back() + 1) / 2);
-    levels.push_back(std::move(coarse));
-  }
-  // The value of a coarse level at the centre of texel (x, y) of the level below it.
-  const auto smooth = [&](std::size_t level, int x, int y) {
-    const int size = sizes[level];
-    const double u = (x + 0.5) / 2 - 0.5, v = (y + 0.5) / 2 - 0.5;
-    const int i = static_cast<int>(std::floor(u)), j = static_cast<int>(std::floor(v));
-    const float s = static_cast<float>(u - i), t = static_cast<float>(v - j);
-    const auto at = [&](int column, int row) {
-      const int c = std::clamp(column, 0, size - 1), r = std::clamp(row, 0, size - 1);
-      return levels[level][idx(r) * idx(size) + idx(c)].value;
-    };
-    return Array4f((at(i, j) * (1 - s) + at(i + 1, j) * s) * (1 - t) +
-                   (at(i, j + 1) * (1 - s) + at(i + 1, j + 1) * s) * t);
-  };
-  for (std::size_t level = levels.size() - 1; level-- > 0;)
-    for (int y = 0; y < sizes[level]; ++y)
-      for (int x = 0; x < sizes[level]; ++x) {
-        Mean& mean = levels[level][idx(y) * idx(sizes[level]) + idx(x)];
-        if (!mean.known) mean.value = smooth(level + 1, x, y);
-      }
+  BakeCanvas coarse = halved(canvas);
+  push_pull(coarse);
   for (int y = 0; y < canvas.size; ++y)
     for (int x = 0; x < canvas.size; ++x)
-      if (canvas.state[canvas.texel(x, y)] == kEmpty)
-        store(canvas, canvas.texel(x, y), smooth(0, x, y));
+      if (const std::size_t texel = canvas.texel(x, y); canvas.state[texel] == kEmpty)
+        store(canvas, texel, smooth(coarse, x, y));
 }
 
 }  // namespace crosspatch

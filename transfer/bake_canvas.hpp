@@ -27,8 +27,8 @@ struct BakeCanvas {
 
 BakeCanvas make_canvas(int size);
 
-/// Paints empty texels up to `reach` texels outside of a seam with what lies across it: the face
-/// there is unfolded into the plane of the seam's face, and the canvas is read where it was
+/// Paints empty texels up to `reach` texels from a seam, the nearest, with what lies across it: the
+/// faces there are unfolded into the plane of the seam's face, and the canvas is read where it was
 /// painted. So filtering sees the same on both sides of the seam.
 void continue_across_seams(BakeCanvas& canvas,
                            const TriangleMesh& mesh,

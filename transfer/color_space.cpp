@@ -46,6 +46,10 @@ float to_linear_light(std::uint16_t stored, ColorSpace space) {
   return static_cast<float>(stored) / (kSteps - 1);
 }
 
+const std::uint16_t* srgb_values() {
+  return encoded().data();
+}
+
 std::uint16_t to_stored(std::uint16_t linear, ColorSpace space) {
   return space == ColorSpace::kSrgb ? encoded()[linear] : linear;
 }

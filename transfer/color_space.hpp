@@ -16,4 +16,7 @@ float to_linear_light(std::uint16_t stored, ColorSpace space);
 /// The nearest stored 16-bit value of linear light given in 65535ths.
 std::uint16_t to_stored(std::uint16_t linear, ColorSpace space);
 
+/// to_stored for sRGB as a table of 65536 entries.
+const std::uint16_t* srgb_values();
+
 }  // namespace crosspatch

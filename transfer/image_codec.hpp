@@ -28,10 +28,12 @@ enum class ImageFormat { kPng, kJpeg, kExr };
 /// How an image is stored.
 struct ImageEncoding {
   ImageFormat format = ImageFormat::kPng;
-  int bits = 8;             ///< 8 or 16; a JPEG has 8, an EXR 16 (half precision)
-  bool is_color = true;     ///< the values are sRGB-encoded; an EXR stores them linear
-  int jpeg_quality = 95;    ///< 1 to 100. Ours: no visible blocks on fur
-  int png_compression = 4;  ///< 0 to 9. Measured: 2 % larger than 6 in half the time
+  int bits = 8;           ///< 8 or 16; a JPEG has 8, an EXR 16 (half precision)
+  bool is_color = true;   ///< the values are sRGB-encoded; an EXR stores them linear
+  int jpeg_quality = 95;  ///< 1 to 100. Ours: no visible blocks on fur
+  /// 0 to 9: up to 3 is quick, more is small. Measured on textures with 4096 texels a side: 4 takes
+  /// three times as long as 3 for 8.8 % less.
+  int png_compression = 3;
 };
 
 /// The image as the bytes of a file. JPEG leaves alpha out. kOutput when the encoder fails.

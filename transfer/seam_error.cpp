@@ -26,7 +26,7 @@ Eigen::Array3f stored(const Eigen::Array4f& linear) {
 std::array<double, kSeamLevels> seam_error(const RasterImage& image,
                                            const TriangleMesh& mesh,
                                            const Unwrap& unwrap) {
-  const TexturePyramid pyramid = make_pyramid(image, ColorSpace::kSrgb, false);
+  const TexturePyramid pyramid = make_pyramid(image, ColorSpace::kSrgb, Alpha::kIgnored);
   TextureRef clamped;
   clamped.wrap_s = clamped.wrap_t = kClamp;
   constexpr int kBins = 256 * 16;

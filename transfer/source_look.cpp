@@ -6,7 +6,6 @@
 
 #include "core/index.hpp"
 #include "transfer/tangents.hpp"
-#include "transfer/texel_raster.hpp"
 
 namespace crosspatch {
 namespace {
@@ -89,11 +88,12 @@ Status SourceLook::load(int material) {
   }
   if (textures_.contains({ref.image, premultiply})) return {};
   const ImageFile& file = mesh_->images[idx(ref.image)];
-  const Result<RasterImage> image = decode_image_file(file.bytes);
+  Result<RasterImage> image = decode_image_file(file.bytes);
   if (!image)
     return fail(ErrorCode::kBadInput, "texture \"" + file.name + "\": " + image.error().message);
   const ColorSpace space = is_color(channel_) ? ColorSpace::kSrgb : ColorSpace::kLinear;
-  textures_[{ref.image, premultiply}] = make_pyramid(*image, space, premultiply);
+  textures_[{ref.image, premultiply}] =
+      make_pyramid(std::move(*image), space, premultiply ? Alpha::kPremultiplied : Alpha::kIgnored);
   return {};
 }
 
@@ -103,9 +103,12 @@ SourceLook::Triangle SourceLook::triangle(int t) const {
   Triangle triangle;
   triangle.index = t;
   triangle.ref = &ref;
+  triangle.material = &m;
+  triangle.opaque = is_opaque(m);
   triangle.factor = factor(m, channel_);
   if (ref.image < 0) return triangle;
-  triangle.texture = &textures_.at({ref.image, channel_ == Channel::kBaseColor && !is_opaque(m)});
+  triangle.texture =
+      &textures_.at({ref.image, channel_ == Channel::kBaseColor && !triangle.opaque});
   for (std::size_t k = 0; k < 3; ++k)
     triangle.uv[k] =
         transformed(mesh_->uv_sets[idx(ref.uv_set)][idx(3 * t) + k], ref.transform).cast<float>();
@@ -135,17 +138,16 @@ Array4f SourceLook::at(const Triangle& triangle, const Vector3d& bary) const {
         b[0] * triangle.uv[0] + b[1] * triangle.uv[1] + b[2] * triangle.uv[2];
     value = sample(*triangle.texture, *triangle.ref, uv, triangle.footprint);
   }
-  const Material& m = mesh_->materials[idx(mesh_->material[idx(triangle.index)])];
   switch (channel_) {
     case Channel::kNormal:
       return triangle.texture != nullptr ? turned(triangle, bary, value)
                                          : Array4f(0.5F, 0.5F, 1, 1);
     case Channel::kOcclusion: {
-      const float s = static_cast<float>(m.occlusion.strength);
+      const float s = static_cast<float>(triangle.material->occlusion.strength);
       return triangle.texture != nullptr ? Array4f(1 + s * (value - 1)) : value;
     }
     case Channel::kBaseColor: {
-      if (is_opaque(m)) value[3] = 1;
+      if (triangle.opaque) value[3] = 1;
       value *= triangle.factor;
       if (mesh_->colors.empty()) return value;
       Array4f color = Array4f::Zero();
@@ -153,7 +155,7 @@ Array4f SourceLook::at(const Triangle& triangle, const Vector3d& bary) const {
         const auto& c = mesh_->colors[idx(3 * triangle.index) + k];
         color += static_cast<float>(bary[static_cast<int>(k)]) * Array4f(c[0], c[1], c[2], c[3]);
       }
-      if (is_opaque(m)) color[3] = 1;
+      if (triangle.opaque) color[3] = 1;
       return value * color * Array4f(color[3], color[3], color[3], 1);
     }
     case Channel::kMetallicRoughness:
@@ -161,6 +163,37 @@ Array4f SourceLook::at(const Triangle& triangle, const Vector3d& bary) const {
       break;
   }
   return value * triangle.factor;
+}
+
+void SourceLook::paint(const Triangle& triangle, const TexelSpan& span, std::uint16_t* rgba) const {
+  const int count = span.right - span.left + 1;
+  const Vector3d first = span.at_zero + span.left * span.per_x;
+  const Vector3d last = span.at_zero + span.right * span.per_x;
+  const bool inside = first.minCoeff() >= 0 && last.minCoeff() >= 0;
+  const bool plain = channel_ == Channel::kMetallicRoughness || channel_ == Channel::kEmissive ||
+                     (channel_ == Channel::kBaseColor && mesh_->colors.empty());
+  if (inside && plain && triangle.texture != nullptr) {
+    Vector2d uv = Vector2d::Zero(), step = Vector2d::Zero();
+    for (int k = 0; k < 3; ++k) {
+      uv += first[k] * triangle.uv[idx(k)].cast<double>();
+      step += span.per_x[k] * triangle.uv[idx(k)].cast<double>();
+    }
+    const Array4f& f = triangle.factor;
+    const FourFloats factors{f[0], f[1], f[2], f[3]};
+    for (int i = 0; i < count; ++i, uv += step) {
+      FourFloats value =
+          sample_four(*triangle.texture, *triangle.ref, uv.cast<float>(), triangle.footprint);
+      if (triangle.opaque) value[3] = 65535;
+      store_four(value * factors, rgba + 4 * i);
+    }
+    return;
+  }
+  for (int i = 0; i < count; ++i) {
+    Vector3d bary = (first + i * span.per_x).cwiseMax(0.0);
+    bary /= bary.sum();
+    const Array4f value = at(triangle, bary);
+    store_four(FourFloats{value[0], value[1], value[2], value[3]} * 65535, rgba + 4 * i);
+  }
 }
 
 Array4f SourceLook::turned(const Triangle& triangle, const Vector3d& bary, Array4f value) const {

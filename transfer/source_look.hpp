@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "transfer/texel_raster.hpp"
 #include "transfer/texture_pyramid.hpp"
 #include "transfer/textured_mesh.hpp"
 
@@ -33,6 +34,8 @@ class SourceLook {
   struct Triangle {
     const TexturePyramid* texture = nullptr;  ///< or none
     const TextureRef* ref = nullptr;
+    const Material* material = nullptr;
+    bool opaque = true;
     std::array<Eigen::Vector2f, 3> uv;  ///< texture transform applied
     Footprint footprint;
     Eigen::Array4f factor = Eigen::Array4f::Ones();
@@ -50,6 +53,10 @@ class SourceLook {
   [[nodiscard]] Triangle triangle(int t, const std::array<Vector2d, 3>& corner) const;
 
   [[nodiscard]] Eigen::Array4f at(const Triangle& triangle, const Vector3d& bary) const;
+
+  /// The values of a span's texels, in 65535ths, four a texel; points beside the triangle, as
+  /// rounding has them, count as on its sides.
+  void paint(const Triangle& triangle, const TexelSpan& span, std::uint16_t* rgba) const;
 
   /// Whether any value may have an alpha below 1.
   [[nodiscard]] bool has_alpha() const { return has_alpha_; }

@@ -8,6 +8,7 @@
 #include "shapes.hpp"
 #include "transfer/atlas.hpp"
 #include "transfer/painted.hpp"
+#include "transfer/tangents.hpp"
 #include "transfer/texture_pyramid.hpp"
 
 namespace crosspatch {
@@ -76,7 +77,7 @@ TEST(Bake, SameSurfaceKeepsItsLook) {
     EXPECT_LE(baked->statistics.seam_error[idx(level)], 4) << "mip " << level;
 
   const RasterImage image = image_of(baked->mesh, baked->mesh.materials[0].base_color);
-  const TexturePyramid pyramid = make_pyramid(image, ColorSpace::kSrgb, false);
+  const TexturePyramid pyramid = make_pyramid(image, ColorSpace::kSrgb, Alpha::kIgnored);
   std::mt19937 random(0);
   std::uniform_real_distribution<double> unit(0, 1);
   double squares = 0;
@@ -140,6 +141,127 @@ TEST(Bake, FlatNormalMapsStayFlatAndTurnedOnesTurn) {
         EXPECT_NEAR(n.matrix().norm(), 1, 2.0 / 255);
       }
   }
+}
+
+/// The normal in space that a renderer makes of a normal map at a point of a face.
+Vector3d lit_normal(const TexturedMesh& mesh,
+                    const std::vector<Eigen::Vector4d>& tangents,
+                    const TexturePyramid& map,
+                    const SurfacePoint& p) {
+  Vector3d normal = Vector3d::Zero();
+  Eigen::Vector4d tangent = Eigen::Vector4d::Zero();
+  Vector2d uv = Vector2d::Zero();
+  for (int k = 0; k < 3; ++k) {
+    const std::size_t corner = idx(3 * p.face + k);
+    normal += p.bary[k] * shading_normal(mesh, p.face, k);
+    tangent += p.bary[k] * tangents[corner];
+    uv += p.bary[k] * mesh.uv_sets[0][corner];
+  }
+  normal.normalize();
+  const Vector3d t = (tangent.head<3>() - normal * normal.dot(tangent.head<3>())).normalized();
+  const Vector3d b = (tangent[3] < 0 ? -1 : 1) * normal.cross(t);
+  const Vector3d n = sample(map.levels[0], {}, uv.cast<float>()).head<3>().cast<double>() * 2 - 1;
+  return (t * n[0] + b * n[1] + normal * n[2]).normalized();
+}
+
+TEST(Bake, BumpyNormalMapsLightTheSameInTurnedAndMirroredFrames) {
+  const TriangleMesh mesh = shapes::icosphere(3);
+  const Unwrap unwrap = make_atlas(mesh, {.size = 512}).value().unwrap;
+  Surface source = shapes::surface_of(mesh);
+  shapes::texture(
+      source, [](int, const Vector3d&) { return Vector2d::Zero(); }, 1024);
+  source.soup.uv_sets[0] = unwrap.uv;
+  source.soup.materials[0].base_color = {};
+  source.soup.materials[0].normal.image = 0;
+  source.soup.images = {shapes::png(1024, 3, [](double u, double v) {
+    const Vector3d n = Vector3d(0.6 * std::sin(50 * u), 0.6 * std::cos(40 * v), 1).normalized();
+    return Eigen::Array4d(n[0] / 2 + 0.5, n[1] / 2 + 0.5, n[2] / 2 + 0.5, 1);
+  })};
+  const auto turned = [](const Vector2d& uv) { return Vector2d(1 - uv[1], uv[0]); };
+  const auto mirrored = [](const Vector2d& uv) { return Vector2d(uv[1], uv[0]); };
+  for (const auto& change :
+       std::vector<std::function<Vector2d(const Vector2d&)>>{turned, mirrored}) {
+    Surface target = shapes::surface_of(mesh);
+    target.soup.uv_sets.emplace_back();
+    for (const Vector2d& uv : unwrap.uv) target.soup.uv_sets[0].push_back(change(uv));
+    const auto baked =
+        bake_texture(source.view(), target.view(), identity_map(mesh), {.size = 1024});
+    ASSERT_TRUE(baked) << baked.error().message;
+    ASSERT_TRUE(baked->statistics.own_unwrap) << baked->statistics.why_not_own;
+    const auto pyramid = [](const RasterImage& image) {
+      return make_pyramid(image, ColorSpace::kLinear, Alpha::kIgnored);
+    };
+    const TexturePyramid before = pyramid(*decode_image_file(source.soup.images[0].bytes));
+    const RasterImage image = image_of(baked->mesh, baked->mesh.materials[0].normal);
+    const TexturePyramid after = pyramid(image);
+    for (std::size_t i = 0; i < image.values.size(); i += 3) {
+      const Vector3d n =
+          Vector3d(image.values[i], image.values[i + 1], image.values[i + 2]) / 32767.5;
+      ASSERT_NEAR((n - Vector3d::Ones()).norm(), 1, 2.0 / 255) << i;  // rounding to 8 bits
+    }
+    TexturedMesh original = baked->mesh;
+    original.uv_sets[0] = unwrap.uv;
+    const auto tangents_before = corner_tangents(original, 0, 0);
+    const auto tangents_after = corner_tangents(baked->mesh, 0, 0);
+    std::mt19937 random(0);
+    std::uniform_real_distribution<double> unit(0, 1);
+    double degrees = 0, relief = 0;
+    constexpr int kPoints = 5000;
+    for (int i = 0; i < kPoints; ++i) {
+      const int f = static_cast<int>(random() % static_cast<unsigned>(mesh.face_count()));
+      const double s = std::sqrt(unit(random)), t = unit(random);
+      const SurfacePoint p{f, Vector3d(1 - s, s * (1 - t), s * t)};
+      const Vector3d a = lit_normal(original, tangents_before, before, p);
+      const Vector3d b = lit_normal(baked->mesh, tangents_after, after, p);
+      const auto angle = [](const Vector3d& x, const Vector3d& y) {
+        return std::acos(std::clamp(x.dot(y), -1.0, 1.0)) * 180 / 3.14159265358979;
+      };
+      degrees += angle(a, b) / kPoints;
+      relief += angle(a, position(mesh, p).normalized()) / kPoints;
+    }
+    EXPECT_LE(degrees, 3);
+    EXPECT_GE(relief, 20);  // the bumps are large against what is allowed
+  }
+}
+
+TEST(Bake, ColoursAreAveragedAsLightAndDataAsNumbers) {
+  PlanarPair pair = planar_pair(upright);
+  pair.source.soup.images = {shapes::png(64, 3, [](double u, double) {
+    return static_cast<int>(u * 64) % 2 == 0 ? Eigen::Array4d(0, 0, 0, 1)
+                                             : Eigen::Array4d(1, 1, 1, 1);
+  })};
+  Material& m = pair.source.soup.materials[0];
+  m.emissive = m.occlusion = m.metallic_roughness = m.base_color;
+  m.emissive_factor = {1, 1, 1};
+  m.metallic_factor = m.roughness_factor = 1;
+  const auto baked = bake_texture(pair.source.view(), pair.target.view(), pair.map, {.size = 32});
+  ASSERT_TRUE(baked) << baked.error().message;
+  const Material& out = baked->mesh.materials[0];
+  // Half of the light is 188 of 255 in sRGB (IEC 61966-2-1), half of a number 128.
+  for (const TextureRef* color : {&out.base_color, &out.emissive})
+    EXPECT_NEAR(value(image_of(baked->mesh, *color), 16, 16)[0], 188.0 / 255, 1.0 / 255);
+  for (const TextureRef* data : {&out.occlusion, &out.metallic_roughness})
+    EXPECT_NEAR(value(image_of(baked->mesh, *data), 16, 16)[1], 128.0 / 255, 1.0 / 255);
+}
+
+TEST(Bake, SixteenBitsStaySixteenBits) {
+  PlanarPair pair = planar_pair(upright);
+  RasterImage ramp{64, 64, 3, {}};
+  const auto at = [](int x, int y) {
+    return static_cast<std::uint16_t>(20000 + 10 * (64 * y + x));
+  };
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x) ramp.values.insert(ramp.values.end(), 3, at(x, y));
+  pair.source.soup.images = {
+      image_file("ramp", ImageFormat::kPng, *encode_image_file(ramp, {.bits = 16}))};
+  const auto baked = bake_texture(
+      pair.source.view(), pair.target.view(), pair.map, {.size = 64, .encoding = {.bits = 16}});
+  ASSERT_TRUE(baked) << baked.error().message;
+  const RasterImage image = image_of(baked->mesh, baked->mesh.materials[0].base_color);
+  // One step of linear light is up to five of sRGB at these values; a step of 8 bits is 257.
+  for (int y = 8; y < 56; ++y)
+    for (int x = 8; x < 56; ++x)
+      EXPECT_NEAR(value(image, x, y)[0] * 65535, at(x, y), 16) << x << ' ' << y;
 }
 
 TEST(Bake, TransparentTexelsDoNotBleed) {

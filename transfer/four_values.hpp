@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <cstring>
+
+namespace crosspatch {
+
+// Four values at once: compilers do not find these instructions behind Eigen's conversions, and
+// reading and writing texels is most of the time that a bake takes.
+using FourFloats = float __attribute__((vector_size(16)));
+using FourInts = std::int32_t __attribute__((vector_size(16)));
+using FourShorts = std::uint16_t __attribute__((vector_size(8)));
+
+inline FourFloats load_four(const std::uint16_t* p) {
+  FourShorts narrow;
+  std::memcpy(&narrow, p, sizeof narrow);
+  return __builtin_convertvector(__builtin_convertvector(narrow, FourInts), FourFloats);
+}
+
+/// Rounds to the nearest; what is outside of [0, 65535] goes to its ends.
+inline void store_four(const FourFloats& values, std::uint16_t* p) {
+  const FourFloats none{0, 0, 0, 0}, most{65535, 65535, 65535, 65535};
+  FourFloats inside = values > none ? values : none;
+  inside = inside < most ? inside : most;
+  const FourShorts narrow =
+      __builtin_convertvector(__builtin_convertvector(inside + 0.5F, FourInts), FourShorts);
+  std::memcpy(p, &narrow, sizeof narrow);
+}
+
+inline Eigen::Array4f to_array(const FourFloats& v) {
+  return {v[0], v[1], v[2], v[3]};
+}
+
+}  // namespace crosspatch
