@@ -219,6 +219,10 @@ CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
       ->check(CLI::IsMember({8, 16}))
       ->capture_default_str()
       ->type_name("8|16");
+  command->add_flag("--round-trip",
+                    arguments.round_trip,
+                    "bake: carry the result back to the source as well, and report how much of "
+                    "the texture was lost");
   command
       ->add_option("--uv-tolerance",
                    arguments.uv_tolerance_texels,
@@ -282,6 +286,9 @@ std::string contradiction(const TransferArguments& a) {
   if (!format) return fmt::format("--output: '{}' is no .glb, .gltf, .obj or .ply", a.output);
   if (a.image_format == ImageFormat::kExr && *format != MeshFormat::kObj)
     return "--image exr: only an .obj can refer to EXR images";
+  if (a.round_trip && a.mode != TransferMode::kBake) return "--round-trip: it needs --mode bake";
+  if (a.round_trip && a.image_format == ImageFormat::kExr)
+    return "--round-trip: it reads PNG and JPEG, not EXR";
   if (a.image_format == ImageFormat::kJpeg && a.bits != 8) return "--bits 16: a JPEG has 8";
   if (a.pair.files.map_base != 0 && a.pair.files.map.empty())
     return "--map-base: no --map is given";

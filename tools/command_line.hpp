@@ -94,6 +94,7 @@ struct TransferArguments {
   int size = 2048;                   ///< kBake: texels a side
   ImageFormat image_format = ImageFormat::kPng;
   int bits = 8;                                ///< kBake: of a channel
+  bool round_trip = false;                     ///< kBake: bake back and compare
   std::vector<std::string> attributes;         ///< files of what else to carry
   std::vector<std::string> attributes_output;  ///< their outputs; empty = beside `output`
 };

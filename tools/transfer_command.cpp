@@ -9,6 +9,7 @@
 #include "tools/pair_report.hpp"
 #include "transfer/bake.hpp"
 #include "transfer/carry_texture.hpp"
+#include "transfer/round_trip.hpp"
 #include "transfer/write_mesh_files.hpp"
 
 namespace crosspatch {
@@ -45,6 +46,7 @@ struct Transferred {
   TexturedMesh mesh;
   std::map<std::string, double> figures;
   std::string summary;
+  std::string warning{};
 };
 
 Result<Transferred> keep(const TransferArguments& arguments, const PairRun& run) {
@@ -61,6 +63,22 @@ Result<Transferred> keep(const TransferArguments& arguments, const PairRun& run)
                      fmt::format("{} triangles, {} seam cuts", s.triangles, s.seam_cuts)};
 }
 
+/// Adds the figures of the round trip, or tells why there are none.
+std::string add_round_trip(const PairRun& run,
+                           const TexturedMesh& baked,
+                           std::map<std::string, double>& figures) {
+  const auto trip = round_trip({run.source.prepared, run.source.soup},
+                               {run.target.prepared, run.target.soup},
+                               run.matched.result.map,
+                               baked);
+  if (!trip) return "no round trip was measured, as of the source " + trip.error().message;
+  figures["round_trip_psnr"] = trip->similarity.psnr;
+  figures["round_trip_ssim"] = trip->similarity.ssim;
+  figures["round_trip_size"] = trip->size;
+  figures["round_trip_covered"] = trip->covered;
+  return "";
+}
+
 Result<Transferred> bake(const TransferArguments& arguments, const PairRun& run) {
   BakeOptions options;
   options.size = arguments.size;
@@ -72,6 +90,9 @@ Result<Transferred> bake(const TransferArguments& arguments, const PairRun& run)
                             options);
   if (!baked) return tl::unexpected(baked.error());
   const BakeStatistics& s = baked->statistics;
+  std::map<std::string, double> figures = bake_figures(s);
+  std::string warning;
+  if (arguments.round_trip) warning = add_round_trip(run, baked->mesh, figures);
   const std::string where =
       s.own_unwrap
           ? "over the target's texture coordinates"
@@ -79,12 +100,13 @@ Result<Transferred> bake(const TransferArguments& arguments, const PairRun& run)
                         s.charts,
                         s.why_not_own);
   return Transferred{std::move(baked->mesh),
-                     bake_figures(s),
+                     std::move(figures),
                      fmt::format("{0} x {0} texels {1}, {2:.2f} % filled, seams {3:.1f}/255",
                                  options.size,
                                  where,
                                  100 * s.texels_filled,
-                                 s.seam_error[0])};
+                                 s.seam_error[0]),
+                     warning};
 }
 
 /// The files of the mesh, beside each other.
@@ -132,6 +154,7 @@ Result<ExitCode> run(const TransferArguments& arguments) {
   report.command = "transfer";
   report.options = options_in_force(arguments);
   for (const auto& [name, value] : result->figures) report.quality[name] = value;
+  if (!result->warning.empty()) report.warnings.push_back(result->warning);
   if (!attribute_paths.empty()) {
     progress.begin("attributes");
     CarriedAttributes carried = carry_attributes(

@@ -74,6 +74,29 @@ std::vector<FigureVerdict> verdicts(const std::map<std::string, double>& quality
       {"Few places are stretched much.",
        "Some parts, such as ears or hands, are stretched.",
        "Whole parts are stretched: perhaps one of the two lacks them."});
+  add("texels_filled",
+      "Texels filled",
+      percent,
+      lack({0, 1e-3}),
+      {"No place of the target is left without colour.",
+       "Single texels are left without colour.",
+       "Some places are left without colour."});
+  add("seam_error_mip_3",
+      "Seams, seen from afar",
+      [](double v) { return fmt::format("{:.1f} of 255", v); },
+      less({4, 12}),
+      {"They cannot be seen.",
+       "Faint lines may be seen along them.",
+       "They can be seen as lines."});
+  add(
+      "round_trip_psnr",
+      "There and back",
+      [](double v) { return fmt::format("{:.1f} dB", v); },
+      [](double v) { return v >= 32 ? 0 : (v >= 26 ? 1 : 2); },
+      {"Hardly a detail of the texture was lost.",
+       "Fine details were lost: larger images keep more.",
+       "Much was lost: larger images keep more, but where the map presses a part together they "
+       "help little."});
   return result;
 }
 

@@ -9,19 +9,7 @@
 #include "transfer/triangulate.hpp"
 
 namespace crosspatch {
-namespace {
 
-/// Polygons of the overlay and how their sides meet. Side c runs from corner c to the next corner
-/// of its polygon; corners and sides share one numbering.
-struct Sides {
-  std::vector<int> polygon;    ///< per corner
-  std::vector<int> following;  ///< next corner of the same polygon
-  std::vector<int> opposite;   ///< side that runs the other way between the same points, or -1
-  std::vector<bool> used;      ///< per polygon: its target face is filled
-};
-
-/// Whether the polygons of each target face fill it. Partly filled faces count as empty: a face
-/// would otherwise have a hole, and half a face cannot be told from a mistake.
 std::vector<bool> filled_faces(const TriangleMesh& target, const SurfaceMap& map) {
   // Accumulated rounding of an overlay's barycentric coordinates.
   constexpr double kMissing = 1e-6;
@@ -39,6 +27,17 @@ std::vector<bool> filled_faces(const TriangleMesh& target, const SurfaceMap& map
   for (std::size_t f = 0; f < area.size(); ++f) filled[f] = std::abs(area[f] - 1) < kMissing;
   return filled;
 }
+
+namespace {
+
+/// Polygons of the overlay and how their sides meet. Side c runs from corner c to the next corner
+/// of its polygon; corners and sides share one numbering.
+struct Sides {
+  std::vector<int> polygon;    ///< per corner
+  std::vector<int> following;  ///< next corner of the same polygon
+  std::vector<int> opposite;   ///< side that runs the other way between the same points, or -1
+  std::vector<bool> used;      ///< per polygon: its target face is filled
+};
 
 Sides make_sides(const SurfaceMap& map, const std::vector<bool>& filled) {
   Sides s;

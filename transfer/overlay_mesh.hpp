@@ -51,6 +51,10 @@ OverlayMesh make_overlay_mesh(const SourceAttributes& attributes,
                               const TriangleMesh& target,
                               const SurfaceMap& map);
 
+/// Whether the polygons of each target face fill it. Partly filled faces count as empty: a face
+/// would otherwise have a hole, and half a face cannot be told from a mistake.
+std::vector<bool> filled_faces(const TriangleMesh& target, const SurfaceMap& map);
+
 /// Bounds for thinning, both on the difference to the exactly carried attributes.
 struct ThinningOptions {
   double uv_tolerance_texels = 0.5;

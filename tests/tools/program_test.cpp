@@ -281,6 +281,7 @@ TEST_F(PairOfSurfaces, TransferOptionsThatContradictAreRefused) {
            {"a.fbx", "--output: 'out/a.fbx' is no .glb, .gltf, .obj or .ply"},
            {"a.glb --image exr", "--image exr: only an .obj can refer to EXR images"},
            {"a.glb --image jpeg --bits 16", "--bits 16: a JPEG has 8"},
+           {"a.obj --image exr --round-trip", "--round-trip: it reads PNG and JPEG, not EXR"},
            {"a.glb -q -v", "--quiet and --verbose contradict each other"},
            {"a.glb --map m --landmarks l",
             "--map and --landmarks: a given map needs no landmarks"}}) {
