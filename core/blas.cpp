@@ -1,5 +1,7 @@
 #include "core/blas.hpp"
 
+#include <mutex>
+
 // Weak: other BLAS libraries do not have them, and need not.
 extern "C" {
 [[gnu::weak]] void openblas_set_num_threads(int);
@@ -8,14 +10,26 @@ extern "C" {
 
 namespace crosspatch {
 
+namespace {
+
+std::mutex mutex;
+int alive = 0;   // guards
+int before = 0;  // threads when there was none
+
+}  // namespace
+
 SingleThreadedBlas::SingleThreadedBlas() {
   if (openblas_get_num_threads == nullptr || openblas_set_num_threads == nullptr) return;
-  before_ = openblas_get_num_threads();
+  const std::lock_guard lock(mutex);
+  if (alive++ > 0) return;
+  before = openblas_get_num_threads();
   openblas_set_num_threads(1);
 }
 
 SingleThreadedBlas::~SingleThreadedBlas() {
-  if (before_ > 0) openblas_set_num_threads(before_);
+  if (openblas_get_num_threads == nullptr || openblas_set_num_threads == nullptr) return;
+  const std::lock_guard lock(mutex);
+  if (--alive == 0) openblas_set_num_threads(before);
 }
 
 }  // namespace crosspatch

@@ -7,9 +7,9 @@
 // P [y1 - y0, y2 - y0] D, D the inverse rest edges.
 #include "param/sphere_optimizer.hpp"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,7 +18,10 @@
 #include <numeric>
 #include <span>
 
+#include "core/blas.hpp"
+#include "param/newton_solver.hpp"
 #include "param/sphere_orientation.hpp"
+#include "param/vertex_colours.hpp"
 
 namespace crosspatch {
 namespace {
@@ -152,10 +155,16 @@ class Optimizer {
     return problem_.rest_area[f] * (e + options_.barrier * reference_[f] / det);
   }
 
-  /// One Newton step with a line search for each free vertex in turn, the others held.
+  /// One Newton step with a line search for each free vertex in turn, the others held. Vertices of
+  /// one colour have no face in common and step at the same time.
   void sweep() {
-    for (int v = 0; v < X_.rows(); ++v)
-      if (unknown_[at(v)] >= 0) step_alone(v);
+    constexpr size_t kGrain = 32;
+    for (const std::vector<int>& colour : colours_)
+      tbb::parallel_for(tbb::blocked_range<size_t>(0, colour.size(), kGrain),
+                        [&](const tbb::blocked_range<size_t>& range) {
+                          for (size_t i = range.begin(); i < range.end(); ++i)
+                            step_alone(colour[i]);
+                        });
   }
 
   void step_alone(int v) {
@@ -164,10 +173,12 @@ class Optimizer {
     Eigen::Matrix2d H = Eigen::Matrix2d::Zero();
     Vector2d g = Vector2d::Zero();
     for (int f : faces_of(v)) {
+      const FaceModel m = face_model(f);
       const int k = corner_of(f, v);
-      const FaceSystem s = face_system(f, 1 << k);
-      H += s.H.block<2, 2>(2 * k, 2 * k);
-      g += s.g.segment<2>(2 * k);
+      const Rates J = rates(m, f, k);
+      const Vector2d barrier = barrier_rate(m, f, k);
+      H += m.weight * J.transpose() * m.energy.H * J + 2 * barrier * barrier.transpose();
+      g += m.weight * J.transpose() * m.energy.g + 2 * m.barrier * barrier;
     }
     add_fields(v, H, g);
     const Vector2d step = -H.ldlt().solve(g);
@@ -209,47 +220,57 @@ class Optimizer {
     return problem_.F(f, 0) == v ? 0 : problem_.F(f, 1) == v ? 1 : 2;
   }
 
-  /// `corners`: bits of the corners whose rows are wanted.
-  FaceSystem face_system(int f, int corners = 7) const {
+  /// What a face's quadratic model is made of, apart from how its corners move.
+  struct FaceModel {
+    Eigen::Matrix<double, 2, 3> plane;  ///< orthonormal axes of the lifted face
+    IsotropicHessian energy;
+    double weight;   ///< share of the rest area
+    double det;      ///< orientation on the sphere
+    double barrier;  ///< residual whose square is the weighted barrier
+  };
+  using Rates = Eigen::Matrix<double, 4, 2>;
+
+  [[nodiscard]] FaceModel face_model(int f) const {
     const Vector3d y0 = corner(Y_, f, 0), u = corner(Y_, f, 1) - y0, v = corner(Y_, f, 2) - y0;
-    const Vector3d normal = u.cross(v).normalized();
-    Eigen::Matrix<double, 2, 3> P;
-    P.row(0) = u.normalized().transpose();
-    P.row(1) = normal.cross(P.row(0).transpose()).transpose();
+    FaceModel m;
+    m.plane.row(0) = u.normalized().transpose();
+    m.plane.row(1) = u.cross(v).normalized().cross(m.plane.row(0).transpose()).transpose();
     Eigen::Matrix2d E;
-    E << P * u, P * v;
-    const Eigen::Matrix2d& D = problem_.rest_inverse[at(f)];
-    const Eigen::Matrix2d J = E * D;
-    Eigen::Matrix<double, 4, 6> G = Eigen::Matrix<double, 4, 6>::Zero();
-    for (int k = 0; k < 3; ++k) {
-      if ((corners >> k & 1) == 0) continue;
-      const Eigen::Matrix2d M = P * frame_[at(problem_.F(f, k))].on_surface;
-      // How the edge matrix E follows corner k.
-      const Eigen::RowVector2d s = k == 0   ? Eigen::RowVector2d(-1, -1)
-                                   : k == 1 ? Eigen::RowVector2d(1, 0)
-                                            : Eigen::RowVector2d(0, 1);
-      const Eigen::RowVector2d sd = s * D;
-      for (int j = 0; j < 2; ++j) G.col(2 * k + j) = vec(M.col(j) * sd);
-    }
-    const IsotropicHessian e = isotropic_hessian(J, options_.distortion);
-    const double weight = problem_.rest_area[f] / total_area_;
-    FaceSystem s{weight * G.transpose() * e.H * G, weight * G.transpose() * e.g};
-    add_barrier(f, s);
-    return s;
+    E << m.plane * u, m.plane * v;
+    m.energy = isotropic_hessian(E * problem_.rest_inverse[at(f)], options_.distortion);
+    m.weight = problem_.rest_area[f] / total_area_;
+    m.det = sphere_orientation(corner(X_, f, 0), corner(X_, f, 1), corner(X_, f, 2));
+    m.barrier = std::sqrt(m.weight * options_.barrier * reference_[f] / m.det);
+    return m;
   }
 
-  /// Barrier b = det0 / det as the square of the residual sqrt(b).
-  void add_barrier(int f, FaceSystem& s) const {
-    const Vector3d x[3] = {corner(X_, f, 0), corner(X_, f, 1), corner(X_, f, 2)};
-    const double det = sphere_orientation(x[0], x[1], x[2]);
-    const double b = problem_.rest_area[f] / total_area_ * options_.barrier * reference_[f] / det;
-    Vector6 ddet;
-    for (int k = 0; k < 3; ++k)
-      ddet.segment<2>(2 * k) =
-          frame_[at(problem_.F(f, k))].on_sphere.transpose() * x[(k + 1) % 3].cross(x[(k + 2) % 3]);
-    const Vector6 dr = -0.5 * std::sqrt(b) / det * ddet;
-    s.H += 2 * dr * dr.transpose();
-    s.g += 2 * std::sqrt(b) * dr;
+  /// Derivatives of the Jacobian's entries in the coordinates of corner k.
+  [[nodiscard]] Rates rates(const FaceModel& m, int f, int k) const {
+    const Eigen::Matrix2d& D = problem_.rest_inverse[at(f)];
+    // How the Jacobian follows the corner's place in the face's plane.
+    const Eigen::RowVector2d s = k == 0 ? Eigen::RowVector2d(-D.colwise().sum()) : D.row(k - 1);
+    const Eigen::Matrix2d M = m.plane * frame_[at(problem_.F(f, k))].on_surface;
+    Rates r;
+    r << s[0] * M, s[1] * M;
+    return r;
+  }
+
+  /// Derivatives of the barrier's residual in the coordinates of corner k.
+  [[nodiscard]] Vector2d barrier_rate(const FaceModel& m, int f, int k) const {
+    const Vector3d normal = corner(X_, f, (k + 1) % 3).cross(corner(X_, f, (k + 2) % 3));
+    return -0.5 * m.barrier / m.det * (frame_[at(problem_.F(f, k))].on_sphere.transpose() * normal);
+  }
+
+  [[nodiscard]] FaceSystem face_system(int f) const {
+    const FaceModel m = face_model(f);
+    Eigen::Matrix<double, 4, 6> G;
+    Vector6 barrier;
+    for (int k = 0; k < 3; ++k) {
+      G.middleCols<2>(2 * k) = rates(m, f, k);
+      barrier.segment<2>(2 * k) = barrier_rate(m, f, k);
+    }
+    return {m.weight * G.transpose() * m.energy.H * G + 2 * barrier * barrier.transpose(),
+            m.weight * G.transpose() * m.energy.g + 2 * m.barrier * barrier};
   }
 
   /// Unknowns are numbered over the free vertices; the lower triangle's sparsity is fixed by the
@@ -270,6 +291,9 @@ class Optimizer {
     int n = 0;
     for (int v = 0; v < vertices; ++v)
       if (active_[at(v)] && !problem_.fixed[at(v)]) unknown_[at(v)] = 2 * n++;
+    std::vector<bool> is_free(at(vertices));
+    for (int v = 0; v < vertices; ++v) is_free[at(v)] = unknown_[at(v)] >= 0;
+    colours_ = vertex_colours(problem_.F, is_free);
     std::vector<Eigen::Triplet<double>> entries;
     for (int f = 0; f < problem_.F.rows(); ++f)
       for (int a = 0; a < 3; ++a)
@@ -283,7 +307,7 @@ class Optimizer {
     H_.resize(2 * n, 2 * n);
     H_.setFromTriplets(entries.begin(), entries.end());
     H_.makeCompressed();
-    solver_.analyzePattern(H_);
+    solver_.analyze(H_);
     gradient_.resize(2 * n);
     frame_.resize(at(vertices));
     systems_.resize(at(static_cast<int>(problem_.F.rows())));
@@ -343,10 +367,7 @@ class Optimizer {
   bool solve() {
     // Rotations of the sphere and slides of symmetric surfaces leave some energies unchanged.
     for (int i = 0; i < H_.cols(); ++i) entry(i, i) += damping_;
-    solver_.factorize(H_);
-    if (solver_.info() != Eigen::Success) return false;
-    step_ = solver_.solve(-gradient_);
-    return step_.allFinite();
+    return solver_.solve(H_, -gradient_, step_);
   }
 
   /// The state after `t` times the step. Vertices of faces that would become much worse go a
@@ -424,13 +445,15 @@ class Optimizer {
   std::vector<bool> active_;
   std::vector<int> faces_begin_, faces_;  ///< faces around each vertex
   std::vector<int> unknown_;
-  std::vector<Lift::Frame> frame_;  ///< per vertex
+  std::vector<std::vector<int>> colours_;  ///< free vertices
+  std::vector<Lift::Frame> frame_;         ///< per vertex
   std::vector<FaceSystem> systems_;
   double damping_ = 1e-2;   ///< of the steps; diagonal entries of a good map's Hessian are about 30
   Eigen::VectorXd energy_;  ///< per face, where the systems were assembled
   SparseMatrix H_;
   Eigen::VectorXd gradient_, step_;
-  Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower> solver_;
+  NewtonSolver solver_;
+  SingleThreadedBlas blas_;
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "param/ring_kernel.hpp"
 #include "param/sphere_orientation.hpp"
 
 namespace crosspatch {
@@ -15,32 +16,6 @@ using std::size_t;
 
 size_t at(int i) {
   return static_cast<size_t>(i);
-}
-
-using Polygon = std::vector<Vector2d>;
-
-/// The part of a convex polygon where n . p + c > 0.
-Polygon clip(const Polygon& polygon, const Vector2d& n, double c) {
-  Polygon inside;
-  for (size_t i = 0; i < polygon.size(); ++i) {
-    const Vector2d &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
-    const double a = n.dot(p) + c, b = n.dot(q) + c;
-    if (a > 0) inside.push_back(p);
-    if ((a > 0) != (b > 0)) inside.push_back(p + (q - p) * (a / (a - b)));
-  }
-  return inside;
-}
-
-Vector2d centroid(const Polygon& polygon) {
-  double area = 0;
-  Vector2d sum = Vector2d::Zero();
-  for (size_t i = 1; i + 1 < polygon.size(); ++i) {
-    const Vector2d u = polygon[i] - polygon[0], v = polygon[i + 1] - polygon[0];
-    const double a = u[0] * v[1] - u[1] * v[0];
-    area += a;
-    sum += a * (polygon[0] + polygon[i] + polygon[i + 1]) / 3;
-  }
-  return area > 0 ? Vector2d(sum / area) : polygon[0];
 }
 
 /// Places single vertices inside the rings of their neighbours.
@@ -59,24 +34,9 @@ class Placer {
   bool place(int v, int near) {
     collect(v);
     const Vector3d center = X_.row(near).transpose();
-    const Vector3d e1 = center.unitOrthogonal(), e2 = center.cross(e1);
-    // Gnomonic plane: the ring's great circles are lines, and the kernel holds or touches the
-    // origin.
-    constexpr double kReach = 4;
-    Polygon kernel{{-kReach, -kReach}, {kReach, -kReach}, {kReach, kReach}, {-kReach, kReach}};
-    for (const auto& [a, b] : ring_) {
-      // Differences from the centre keep the digits of small rings.
-      const Vector3d p = X_.row(a).transpose(), q = X_.row(b).transpose();
-      const Vector3d n = p.cross(q - p);
-      const double length = n.norm();
-      const double c = a == near || b == near ? 0 : center.dot((p - center).cross(q - center));
-      if (length > 0) kernel = clip(kernel, Vector2d(n.dot(e1), n.dot(e2)) / length, c / length);
-      if (kernel.size() < 3) return false;
-    }
-    const Vector2d middle = centroid(kernel);
-    const auto on_sphere = [&](const Vector2d& p) {
-      return Vector3d((center + p[0] * e1 + p[1] * e2).normalized());
-    };
+    const RingKernel kernel(X_, ring_, center, near);
+    if (kernel.corners().empty()) return false;
+    const Vector2d middle = kernel.centroid();
     double best = std::numeric_limits<double>::infinity();
     const auto consider = [&](const Vector3d& x) {
       int face = hint_[at(near)];
@@ -88,9 +48,10 @@ class Placer {
       }
     };
     if (near == v) consider(center);
-    consider(on_sphere(middle));
+    consider(kernel.on_sphere(middle));
     for (const double s : {0.5, 0.8})
-      for (const Vector2d& corner : kernel) consider(on_sphere(middle + s * (corner - middle)));
+      for (const Vector2d& corner : kernel.corners())
+        consider(kernel.on_sphere(middle + s * (corner - middle)));
     return std::isfinite(best);
   }
 
