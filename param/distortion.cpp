@@ -1,7 +1,7 @@
 #include "param/distortion.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -30,15 +30,30 @@ SingularDerivatives symmetric_dirichlet_derivatives(double s1, double s2) {
 SingularDerivatives both_ways_derivatives(double s1, double s2) {
   const SingularDerivatives q = symmetric_dirichlet_derivatives(s1, s2);
   const double p = s1 * s2;
-  return {(1 + p) * q.energy / 2,
-          (s2 * q.energy + (1 + p) * q.d1) / 2,
-          (s1 * q.energy + (1 + p) * q.d2) / 2,
+  return {(1 + p) * q.energy / 2 - 2 * (p - 1),
+          (s2 * q.energy + (1 + p) * q.d1) / 2 - 2 * s2,
+          (s1 * q.energy + (1 + p) * q.d2) / 2 - 2 * s1,
           (2 * s2 * q.d1 + (1 + p) * q.d11) / 2,
           (2 * s1 * q.d2 + (1 + p) * q.d22) / 2,
-          (q.energy + s1 * q.d1 + s2 * q.d2) / 2,
-          ((1 + p) * q.flip - q.energy) / 2,
-          ((1 + p) * q.twist + q.energy) / 2};
+          (q.energy + s1 * q.d1 + s2 * q.d2) / 2 - 2,
+          ((1 + p) * q.flip - q.energy) / 2 + 2,
+          ((1 + p) * q.twist + q.energy) / 2 - 2};
 }
+
+/// J = U diag(s1, s2) V^T for det J >= 0, in closed form: U and V are rotations, s1 >= s2 >= 0.
+struct Svd2 {
+  explicit Svd2(const Eigen::Matrix2d& J) {
+    const double sum = (J(0, 0) + J(1, 1)) / 2, difference = (J(0, 0) - J(1, 1)) / 2;
+    const double shear = (J(1, 0) + J(0, 1)) / 2, spin = (J(1, 0) - J(0, 1)) / 2;
+    s1 = std::hypot(sum, spin) + std::hypot(difference, shear);
+    s2 = s1 > 0 ? std::max(0.0, J.determinant()) / s1 : 0;
+    const double twice = std::atan2(shear, difference), turn = std::atan2(spin, sum);
+    U = Eigen::Rotation2Dd((twice + turn) / 2);
+    V = Eigen::Rotation2Dd((twice - turn) / 2);
+  }
+  Eigen::Matrix2d U, V;
+  double s1, s2;
+};
 
 /// What kNearlyConformal adds for a scale of areas exp(L), with its derivatives in L.
 struct ScalePenalty {
@@ -79,16 +94,15 @@ double distortion(Distortion distortion,
   if (!(det > 0)) return std::numeric_limits<double>::infinity();
   if (distortion == Distortion::kSymmetricDirichlet) return G.trace() * (1 + 1 / det);
   if (distortion == Distortion::kBothWays)
-    return G.trace() * (1 + 1 / det) * (1 + std::sqrt(det)) / 2;
+    return G.trace() * (1 + 1 / det) * (1 + std::sqrt(det)) / 2 - 2 * (std::sqrt(det) - 1);
   return G.trace() / std::sqrt(det) + ScalePenalty(std::log(det) / 2).value;
 }
 
 IsotropicHessian isotropic_hessian(const Eigen::Matrix2d& J, Distortion distortion) {
-  const Eigen::JacobiSVD<Eigen::Matrix2d> svd(J, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Matrix2d &U = svd.matrixU(), &V = svd.matrixV();
   constexpr double kTiny = 1e-150;
-  const double s1 = std::max(svd.singularValues()[0], kTiny),
-               s2 = std::max(svd.singularValues()[1], kTiny);
+  const Svd2 svd(J);
+  const Eigen::Matrix2d &U = svd.U, &V = svd.V;
+  const double s1 = std::max(svd.s1, kTiny), s2 = std::max(svd.s2, kTiny);
   const SingularDerivatives d = distortion == Distortion::kBothWays ? both_ways_derivatives(s1, s2)
                                 : distortion == Distortion::kSymmetricDirichlet
                                     ? symmetric_dirichlet_derivatives(s1, s2)
