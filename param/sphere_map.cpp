@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "param/cell_relaxation.hpp"
 #include "param/overlay.hpp"
 #include "param/sphere_refinement.hpp"
 #include "param/unfold.hpp"
@@ -231,7 +232,19 @@ void SphereMap::settle() {
       Y_,
       hint);
   relax_worst(level_, source_.mesh.V, lift_, pinned_, X_, hint_);
-  descend(options_.fine_iterations);
+  // Where there is an isometry it is found by now, but for the pull of the barrier and of
+  // curvatures that differ between two triangulations of one surface.
+  constexpr double kNearlyIsometric = 4.1;
+  if (descend(options_.fine_iterations) < kNearlyIsometric)
+    descend({.max_iterations = options_.fine_iterations, .relative_decrease = 1e-9, .barrier = 0},
+            0);
+  // What is left is inside faces, where neither side's vertices see it.
+  constexpr int kRounds = 8;
+  constexpr double kWorthwhile = 2e-3;
+  double gain = 1;
+  for (int i = 0; i < kRounds && gain > kWorthwhile; ++i)
+    gain = relax_cells(source_.mesh, b, Y_, pinned_, X_) +
+           relax_cells(b, source_.mesh, X_, pinned, Y_);
 }
 
 Result<SurfaceMap> SphereMap::overlay() {
@@ -269,17 +282,16 @@ bool SphereMap::release() {
 }
 
 double SphereMap::descend(int iterations) {
+  return descend({.max_iterations = iterations, .relative_decrease = 2e-4, .barrier = kBarrier},
+                 options_.field_weight);
+}
+
+double SphereMap::descend(const SphereOptimizerOptions& options, double field_weight) {
   SphereProblem problem = make_sphere_problem(level_.compact_faces(), source_.mesh.V, pinned_);
   hold_against_target(problem);
-  problem.fields = &source_.curvature;
-  problem.field_weight = options_.field_weight;
-  return optimize_on_sphere(
-             problem,
-             lift_,
-             {.max_iterations = iterations, .relative_decrease = 2e-4, .barrier = kBarrier},
-             X_,
-             hint_)
-      .energy_after;
+  problem.fields = field_weight > 0 ? &source_.curvature : nullptr;
+  problem.field_weight = field_weight;
+  return optimize_on_sphere(problem, lift_, options, X_, hint_).energy_after;
 }
 
 void SphereMap::hold_against_target(SphereProblem& problem) {

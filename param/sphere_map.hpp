@@ -71,6 +71,7 @@ class SphereMap {
   /// Lets go of the landmarks that only decided the homotopy class. True if there were any.
   bool release();
   double descend(int iterations);
+  double descend(const SphereOptimizerOptions& options, double field_weight);
   /// A face that lies where the target is packed densely on the sphere may be as small as that.
   void hold_against_target(SphereProblem& problem);
 

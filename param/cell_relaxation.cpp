@@ -1,0 +1,261 @@
+// Notation: a face of the moving mesh has corners X_k on the sphere; its point with barycentric
+// coordinates b lies at y = sum b_k X_k, and in face g of the other mesh where the values
+// v_m(b) = det(Y_m+1, Y_m+2, y), linear in b, are positive. They are g's barycentric coordinates up
+// to a factor, so that a cell, the face clipped by them, is known on both surfaces.
+#include "param/cell_relaxation.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "core/index.hpp"
+#include "param/lift.hpp"
+#include "param/ring_kernel.hpp"
+#include "param/sphere_orientation.hpp"
+#include "param/vertex_colours.hpp"
+
+namespace crosspatch {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Energy times weight, and weight.
+struct Energy {
+  double sum = 0, weight = 0;
+};
+
+using Polygon = std::vector<Vector3d>;  // barycentric in the moving face
+
+/// Space that is used again and again; one a thread.
+struct Scratch {
+  std::vector<int> seen;  ///< per face of the other mesh: number of the last visit
+  int visit = 0;
+  std::vector<int> waiting;
+  Polygon polygon, clipped;
+  std::vector<Vector2d> on_mesh, on_other;
+  std::vector<std::pair<int, int>> ring;
+};
+
+class CellRelaxation {
+ public:
+  CellRelaxation(const TriangleMesh& mesh,
+                 const TriangleMesh& other,
+                 const MatrixX3d& Y,
+                 MatrixX3d& X)
+      : mesh_(mesh),
+        other_(other),
+        Y_(Y),
+        X_(X),
+        lift_(other, Y),
+        flat_(flatten(mesh)),
+        other_flat_(flatten(other)),
+        scratch_([&] {
+          Scratch s;
+          s.seen.assign(idx(other.face_count()), 0);
+          return s;
+        }) {
+    hint_.assign(idx(mesh.vertex_count()), 0);
+    int face = 0;
+    for (int v = 0; v < mesh.vertex_count(); ++v)
+      hint_[idx(v)] = face = lift_.locate(X.row(v).transpose(), face);
+  }
+
+  /// Tries every vertex once; returns by how much their energies fall.
+  double run(const std::vector<std::vector<int>>& colours) {
+    constexpr std::size_t kGrain = 8;
+    double gained = 0;
+    for (const std::vector<int>& colour : colours) {
+      std::vector<double> gain(colour.size());
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, colour.size(), kGrain),
+                        [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t i = range.begin(); i < range.end(); ++i)
+                            gain[i] = move(colour[i], scratch_.local());
+                        });
+      gained = std::accumulate(gain.begin(), gain.end(), gained);
+    }
+    return gained;
+  }
+
+ private:
+  using Corners = Eigen::Matrix<double, 2, 3>;
+
+  /// Every face laid out in the plane.
+  static std::vector<Corners> flatten(const TriangleMesh& mesh) {
+    std::vector<Corners> flat(idx(mesh.face_count()));
+    for (int f = 0; f < mesh.face_count(); ++f) {
+      const Vector3d a = mesh.position(mesh.F(f, 0));
+      const Vector3d u = mesh.position(mesh.F(f, 1)) - a, v = mesh.position(mesh.F(f, 2)) - a;
+      const double length = std::max(u.norm(), 1e-300);
+      flat[idx(f)] << 0, length, v.dot(u) / length, 0, 0, u.cross(v).norm() / length;
+    }
+    return flat;
+  }
+
+  double move(int v, Scratch& scratch) {
+    constexpr double kBound = 6;
+    const Vector3d center = X_.row(v).transpose();
+    const Energy now = around(v, center, hint_[idx(v)], scratch);
+    if (!(now.sum > kBound * now.weight) || !(now.sum < kInfinity)) return 0;
+    scratch.ring.clear();
+    for_each_outgoing(
+        mesh_, v, [&](int h) { scratch.ring.emplace_back(mesh_.to(h), mesh_.to(next(h))); });
+    const RingKernel kernel(X_, scratch.ring, center);
+    if (kernel.corners().empty()) return 0;
+    double best = now.sum;
+    Vector2d place = Vector2d::Zero();
+    const auto consider = [&](const Vector2d& p) {
+      const Vector3d x = kernel.on_sphere(p);
+      const int face = lift_.locate(x, hint_[idx(v)]);
+      const double sum = around(v, x, face, scratch).sum;
+      if (!(sum < best)) return false;
+      best = sum;
+      place = p;
+      X_.row(v) = x.transpose();
+      hint_[idx(v)] = face;
+      return true;
+    };
+    consider(kernel.centroid());
+    // Towards the kernel's corners, by shorter steps when no step of a length gains any more.
+    constexpr double kLongest = 0.6, kShortest = 0.05;
+    constexpr int kMostSteps = 12;
+    int steps = 0;
+    for (double s = kLongest; s > kShortest && steps < kMostSteps;) {
+      bool better = false;
+      const Vector2d from = place;
+      for (const Vector2d& corner : kernel.corners())
+        better = consider(from + s * (corner - from)) || better;
+      if (better)
+        ++steps;
+      else
+        s /= 2;
+    }
+    return now.sum - best;
+  }
+
+  /// Energy of the faces around v, with v at x in `face` of the other mesh; infinite where one is
+  /// turned over.
+  [[nodiscard]] Energy around(int v, const Vector3d& x, int face, Scratch& scratch) const {
+    Energy energy;
+    for_each_outgoing(mesh_, v, [&](int h) {
+      if (energy.sum < kInfinity) add_face(h / 3, v, x, face, scratch, energy);
+    });
+    return energy;
+  }
+
+  void add_face(int f, int v, const Vector3d& x, int face, Scratch& scratch, Energy& energy) const {
+    Eigen::Matrix3d corners;
+    scratch.waiting.clear();
+    ++scratch.visit;
+    const auto visit = [&](int g) {
+      if (g < 0 || scratch.seen[idx(g)] == scratch.visit) return;
+      scratch.seen[idx(g)] = scratch.visit;
+      scratch.waiting.push_back(g);
+    };
+    for (int k = 0; k < 3; ++k) {
+      const int u = mesh_.F(f, k);
+      corners.col(k) = u == v ? x : Vector3d(X_.row(u).transpose());
+      visit(u == v ? face : hint_[idx(u)]);
+    }
+    if (!(sphere_orientation(corners.col(0), corners.col(1), corners.col(2)) > 0)) {
+      energy.sum = kInfinity;
+      return;
+    }
+    double covered = 0;
+    for (std::size_t i = 0; i < scratch.waiting.size(); ++i) {
+      const int g = scratch.waiting[i];
+      Eigen::Matrix3d values;  // row m: v_m at the corners
+      for (int m = 0; m < 3; ++m) {
+        const Vector3d a = Y_.row(other_.F(g, (m + 1) % 3)), b = Y_.row(other_.F(g, (m + 2) % 3));
+        const Vector3d normal = a.cross(b - a);
+        for (int k = 0; k < 3; ++k) values(m, k) = normal.dot(corners.col(k) - a);
+      }
+      const double share = clip(values, scratch);
+      if (!(share > 0)) continue;
+      covered += share;
+      add_cell(f, g, values, scratch, energy);
+      for (int m = 0; m < 3; ++m)
+        if (values.row(m).minCoeff() < 0) {
+          const int twin = other_.twin[idx(3 * g + (m + 1) % 3)];
+          if (twin >= 0) visit(twin / 3);
+        }
+    }
+    constexpr double kMissing = 1e-6;
+    if (std::abs(covered - 1) > kMissing) energy.sum = kInfinity;
+  }
+
+  /// Clips the face by the three values (Sutherland & Hodgman 1974); returns the share of its area.
+  static double clip(const Eigen::Matrix3d& values, Scratch& scratch) {
+    Polygon &polygon = scratch.polygon, &clipped = scratch.clipped;
+    polygon = {Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ()};
+    for (int m = 0; m < 3; ++m) {
+      const Eigen::RowVector3d value = values.row(m);
+      if (value.minCoeff() >= 0) continue;
+      clipped.clear();
+      for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Vector3d &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
+        const double a = value * p, b = value * q;
+        if (a > 0) clipped.push_back(p);
+        if ((a > 0) != (b > 0)) clipped.push_back(p + (q - p) * (a / (a - b)));
+      }
+      polygon.swap(clipped);
+      if (polygon.size() < 3) return 0;
+    }
+    double share = 0;
+    for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
+      share += polygon[0].dot(polygon[i].cross(polygon[i + 1]));
+    return share;
+  }
+
+  void add_cell(
+      int f, int g, const Eigen::Matrix3d& values, Scratch& scratch, Energy& energy) const {
+    scratch.on_mesh.clear();
+    scratch.on_other.clear();
+    for (const Vector3d& b : scratch.polygon) {
+      scratch.on_mesh.emplace_back(flat_[idx(f)] * b);
+      const Vector3d c = (values * b).cwiseMax(0);
+      scratch.on_other.emplace_back(other_flat_[idx(g)] * (c / c.sum()));
+    }
+    for (std::size_t i = 1; i + 1 < scratch.polygon.size(); ++i) {
+      Eigen::Matrix2d E, G;
+      E << scratch.on_mesh[i] - scratch.on_mesh[0], scratch.on_mesh[i + 1] - scratch.on_mesh[0];
+      G << scratch.on_other[i] - scratch.on_other[0], scratch.on_other[i + 1] - scratch.on_other[0];
+      constexpr double kNothing = 1e-16;  // as measure_map leaves out
+      const double a = std::max(E.determinant(), kNothing), b = std::max(G.determinant(), kNothing);
+      if (a == kNothing && b == kNothing) continue;
+      Eigen::Matrix2d adjugate;
+      adjugate << E(1, 1), -E(0, 1), -E(1, 0), E(0, 0);
+      const double norm = (G * adjugate).squaredNorm() / (a * a);  // |J|^2
+      const double weight = (a + b) / 4;
+      energy.sum += weight * norm * (1 + (a * a) / (b * b));
+      energy.weight += weight;
+    }
+  }
+
+  const TriangleMesh& mesh_;
+  const TriangleMesh& other_;
+  const MatrixX3d& Y_;
+  MatrixX3d& X_;
+  MeshLift lift_;
+  std::vector<Corners> flat_, other_flat_;
+  std::vector<int> hint_;  ///< per vertex: face of the other mesh that holds it
+  tbb::enumerable_thread_specific<Scratch> scratch_;
+};
+
+}  // namespace
+
+double relax_cells(const TriangleMesh& mesh,
+                   const TriangleMesh& other,
+                   const MatrixX3d& Y,
+                   const std::vector<int>& pinned,
+                   MatrixX3d& X) {
+  std::vector<bool> is_free(idx(mesh.vertex_count()), true);
+  for (const int v : pinned) is_free[idx(v)] = false;
+  return CellRelaxation(mesh, other, Y, X).run(vertex_colours(mesh.F, is_free));
+}
+
+}  // namespace crosspatch
