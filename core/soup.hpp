@@ -75,7 +75,10 @@ struct PolygonSoup {
   std::vector<ImageFile> images;
   Eigen::Matrix4d node_transform =
       Eigen::Matrix4d::Identity();  ///< glTF node, not applied to positions
-  std::vector<std::string> notes;   ///< what the reader had to pass over, one line each
+  bool skinned = false;   ///< glTF: a skeleton moves the mesh; see transfer's read_gltf_motion
+  int morph_targets = 0;  ///< ditto, the most that a part of the mesh has
+  int animations = 0;     ///< ditto
+  std::vector<std::string> notes;  ///< what the reader had to pass over, one line each
 
   [[nodiscard]] int polygon_count() const { return static_cast<int>(polygon_begin.size()) - 1; }
   [[nodiscard]] int corner_count() const { return static_cast<int>(corner_vertex.size()); }

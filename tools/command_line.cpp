@@ -251,6 +251,17 @@ CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
                    "'checker' or 'uv' (over them too), or colours by 'position' or by the map's "
                    "'distortion' [its own]")
       ->type_name("FILE|checker|uv|position|distortion");
+  command->add_flag("--skin",
+                    arguments.skin,
+                    "Carry the skeleton of a glTF SOURCE, its animations and the weights (the four "
+                    "largest) to a .glb or .gltf: each joint goes with the surface around it. The "
+                    "bind pose is TARGET as it is; poses are not fitted to its proportions, feet "
+                    "may slide");
+  command->add_flag(
+      "--morphs",
+      arguments.morphs,
+      "Carry the morph targets of a glTF SOURCE to a .glb or .gltf: displacements are "
+      "turned and scaled with the surface");
   command
       ->add_option("--attributes",
                    arguments.attributes,
@@ -274,6 +285,7 @@ CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
       "  crosspatch transfer cow.obj camel.off --landmarks pairs.txt --output camel.glb\n"
       "  crosspatch transfer cow.obj camel.obj --mode bake --size 4096 --output camel.glb\n"
       "  crosspatch transfer cow.obj camel.off --texture hide.png --output camel.gltf\n"
+      "  crosspatch transfer fox.glb camel.off --skin --morphs --output camel.glb\n"
       "  crosspatch transfer cow.ply camel.off --attributes cow.ply --attributes seams.json \\\n"
       "      --output camel.glb\n"
       "  crosspatch render camel.glb --output camel.png");
@@ -284,6 +296,9 @@ CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
 std::string contradiction(const TransferArguments& a) {
   const std::optional<MeshFormat> format = mesh_format(a.output);
   if (!format) return fmt::format("--output: '{}' is no .glb, .gltf, .obj or .ply", a.output);
+  for (const auto& [given, name] : {std::pair(a.skin, "--skin"), std::pair(a.morphs, "--morphs")})
+    if (given && *format != MeshFormat::kGlb && *format != MeshFormat::kGltf)
+      return fmt::format("{}: only a .glb or .gltf can hold it, not '{}'", name, a.output);
   if (a.image_format == ImageFormat::kExr && *format != MeshFormat::kObj)
     return "--image exr: only an .obj can refer to EXR images";
   if (a.round_trip && a.mode != TransferMode::kBake) return "--round-trip: it needs --mode bake";

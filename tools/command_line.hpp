@@ -95,6 +95,8 @@ struct TransferArguments {
   ImageFormat image_format = ImageFormat::kPng;
   int bits = 8;                                ///< kBake: of a channel
   bool round_trip = false;                     ///< kBake: bake back and compare
+  bool skin = false;                           ///< carry skeleton and weights
+  bool morphs = false;                         ///< carry morph targets
   std::vector<std::string> attributes;         ///< files of what else to carry
   std::vector<std::string> attributes_output;  ///< their outputs; empty = beside `output`
 };

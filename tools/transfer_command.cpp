@@ -6,6 +6,7 @@
 
 #include "tools/attributes.hpp"
 #include "tools/commands.hpp"
+#include "tools/motion.hpp"
 #include "tools/pair_report.hpp"
 #include "transfer/bake.hpp"
 #include "transfer/carry_texture.hpp"
@@ -127,6 +128,8 @@ std::map<std::string, std::string> options_in_force(const TransferArguments& arg
   if (!bakes) options["uv_tolerance"] = fmt::format("{}", arguments.uv_tolerance_texels);
   if (bakes) options["size"] = fmt::format("{}", arguments.size);
   if (bakes) options["bits"] = fmt::format("{}", arguments.bits);
+  if (arguments.skin) options["skin"] = "true";
+  if (arguments.morphs) options["morphs"] = "true";
   if (!arguments.pair.files.texture.empty()) options["texture"] = arguments.pair.files.texture;
   return options;
 }
@@ -142,19 +145,26 @@ Result<ExitCode> run(const TransferArguments& arguments) {
       attribute_files(arguments.attributes, arguments.attributes_output, arguments.output);
   const Result<std::vector<Attributes>> attributes = read_attributes(attribute_paths, run->source);
   if (!attributes) return tl::unexpected(attributes.error());
+  const MotionParts parts{.skin = arguments.skin, .morphs = arguments.morphs};
+  const Result<SourceMotion> motion = read_motion(files.source, run->source, parts);
+  if (!motion) return tl::unexpected(motion.error());
   if (Status s = map_pair(files, *run, progress); !s) return tl::unexpected(s.error());
   progress.begin("transfer");
-  const Result<Transferred> result =
+  Result<Transferred> result =
       arguments.mode == TransferMode::kBake ? bake(arguments, *run) : keep(arguments, *run);
   if (!result) return tl::unexpected(result.error());
+  const Result<MotionOutcome> moved = move_mesh(*motion, *run, result->mesh);
+  if (!moved) return tl::unexpected(moved.error());
   Result<std::vector<OutputFile>> outputs = mesh_outputs(result->mesh, arguments.output);
   if (!outputs) return tl::unexpected(outputs.error());
-  progress.end(result->summary);
+  progress.end(result->summary + moved->summary);
   RunReport report = pair_report(arguments.pair, *run);
   report.command = "transfer";
   report.options = options_in_force(arguments);
   for (const auto& [name, value] : result->figures) report.quality[name] = value;
   if (!result->warning.empty()) report.warnings.push_back(result->warning);
+  report.quality.insert(moved->figures.begin(), moved->figures.end());
+  report.warnings.insert(report.warnings.end(), moved->warnings.begin(), moved->warnings.end());
   if (!attribute_paths.empty()) {
     progress.begin("attributes");
     CarriedAttributes carried = carry_attributes(

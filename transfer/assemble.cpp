@@ -54,8 +54,11 @@ class Assembly {
       }
     }
     mesh_.positions.resize(static_cast<Eigen::Index>(used.size()), 3);
-    for (std::size_t i = 0; i < used.size(); ++i)
+    for (std::size_t i = 0; i < used.size(); ++i) {
+      // Points behind those of the map are vertices that it does not reach.
+      mesh_.map_point.push_back(used[i] < overlay.map_points ? used[i] : -1);
       mesh_.positions.row(static_cast<Eigen::Index>(i)) = place(overlay, used[i]).transpose();
+    }
     return std::move(mesh_);
   }
 

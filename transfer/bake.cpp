@@ -41,7 +41,9 @@ class Stopwatch {
 };
 
 /// The target as it will be written: its own triangles over the unwrap, in one material.
-TexturedMesh plain_target(const AttributedMesh& target, const Unwrap& unwrap) {
+TexturedMesh plain_target(const AttributedMesh& target,
+                          const SurfaceMap& map,
+                          const Unwrap& unwrap) {
   const TriangleMesh& mesh = target.prepared.mesh;
   TexturedMesh plain;
   plain.positions = mesh.V;
@@ -52,6 +54,7 @@ TexturedMesh plain_target(const AttributedMesh& target, const Unwrap& unwrap) {
   plain.target_face.resize(idx(mesh.face_count()));
   for (int f = 0; f < mesh.face_count(); ++f) plain.target_face[idx(f)] = f;
   plain.node_transform = target.soup.node_transform;
+  plain.map_point = map.point_of_target_vertex;
   return plain;
 }
 
@@ -309,7 +312,7 @@ Result<BakedTexture> bake_texture(const AttributedMesh& source,
     unwrap = std::move(atlas->unwrap);
   }
   const Carried carried = carry(source, target, map, unwrap, size, s);
-  result.mesh = plain_target(target, unwrap);
+  result.mesh = plain_target(target, map, unwrap);
   const std::set<int> used(carried.mesh.material.begin(), carried.mesh.material.end());
   Material material = baked_material(carried.mesh, used);
   constexpr int kClamp = 33071;

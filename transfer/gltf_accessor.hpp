@@ -14,7 +14,7 @@ namespace crosspatch {
 /// The elements of an accessor one after the other, integers scaled to [0, 1] or [-1, 1] where the
 /// accessor is normalized.
 struct GltfValues {
-  int components = 1;  ///< 1 to 4
+  int components = 1;  ///< 1 to 4, or 16 of a matrix, column by column
   std::vector<double> values;
 
   [[nodiscard]] std::size_t count() const {

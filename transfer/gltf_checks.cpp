@@ -72,6 +72,7 @@ class Checker {
     check_accessors();
     check_meshes();
     check_nodes();
+    check_animations();
     check_materials();
     if (!problem_.empty()) return fail(ErrorCode::kBadInput, problem_);
     return {};
@@ -246,6 +247,27 @@ class Checker {
       indices(member(skin, "joints"), "nodes", where);
       index(member(skin, "skeleton"), "nodes", where);
       index(member(skin, "inverseBindMatrices"), "accessors", where);
+    });
+  }
+
+  void check_animations() {
+    for_each("animations", [&](const json& animation, const std::string& where) {
+      const json& samplers = member(animation, "samplers");
+      const json& channels = member(animation, "channels");
+      if (!samplers.is_array() || !channels.is_array())
+        return complain(where + ": has no samplers or no channels");
+      for (const json& sampler : samplers)
+        for (const char* part : {"input", "output"}) {
+          if (member(sampler, part).is_null())
+            complain(fmt::format("{}: a sampler has no {}", where, part));
+          index(member(sampler, part), "accessors", where);
+        }
+      for (const json& channel : channels) {
+        const json& sampler = member(channel, "sampler");
+        if (!sampler.is_number_unsigned() || sampler.get<std::uint64_t>() >= samplers.size())
+          complain(fmt::format("{}: a channel names no sampler of its {}", where, samplers.size()));
+        index(member(member(channel, "target"), "node"), "nodes", where);
+      }
     });
   }
 

@@ -3,23 +3,11 @@
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
+#include <Eigen/LU>
 #include <numeric>
 
 namespace crosspatch {
 namespace {
-
-Eigen::Matrix4d local_transform(const tinygltf::Node& node) {
-  if (node.matrix.size() == 16) return Eigen::Map<const Eigen::Matrix4d>(node.matrix.data());
-  Eigen::Affine3d transform = Eigen::Affine3d::Identity();
-  if (node.translation.size() == 3) transform.translate(Vector3d(node.translation.data()));
-  if (node.rotation.size() == 4) {
-    const Eigen::Quaterniond q(
-        node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
-    transform.rotate(q.norm() > 0 ? q.normalized() : Eigen::Quaterniond::Identity());
-  }
-  if (node.scale.size() == 3) transform.scale(Vector3d(node.scale.data()));
-  return transform.matrix();
-}
 
 /// Nodes where the walk begins.
 std::vector<int> roots(const tinygltf::Model& model) {
@@ -37,6 +25,25 @@ std::vector<int> roots(const tinygltf::Model& model) {
 }
 
 }  // namespace
+
+Eigen::Matrix4d local_transform(const tinygltf::Node& node) {
+  if (node.matrix.size() == 16) return Eigen::Map<const Eigen::Matrix4d>(node.matrix.data());
+  Eigen::Affine3d transform = Eigen::Affine3d::Identity();
+  if (node.translation.size() == 3) transform.translate(Vector3d(node.translation.data()));
+  if (node.rotation.size() == 4) {
+    const Eigen::Quaterniond q(
+        node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
+    transform.rotate(q.norm() > 0 ? q.normalized() : Eigen::Quaterniond::Identity());
+  }
+  if (node.scale.size() == 3) transform.scale(Vector3d(node.scale.data()));
+  return transform.matrix();
+}
+
+bool has_triangles(const tinygltf::Primitive& primitive) {
+  const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
+  return mode >= TINYGLTF_MODE_TRIANGLES && mode <= TINYGLTF_MODE_TRIANGLE_FAN &&
+         primitive.attributes.count("POSITION") > 0;
+}
 
 Result<std::vector<MeshInstance>> mesh_instances(const tinygltf::Model& model) {
   std::vector<Eigen::Matrix4d> world(model.nodes.size(), Eigen::Matrix4d::Identity());
@@ -67,10 +74,20 @@ Result<std::vector<MeshInstance>> mesh_instances(const tinygltf::Model& model) {
     const tinygltf::Node& node = model.nodes[i];
     if (!seen[i] || node.mesh < 0) continue;
     // glTF 2.0, section 3.7.3.3: a skinned mesh ignores the transform of its node.
-    const bool skinned = node.skin >= 0;
-    out.push_back({node.mesh, skinned ? Eigen::Matrix4d::Identity() : world[i], skinned});
+    out.push_back({static_cast<int>(i),
+                   node.mesh,
+                   node.skin,
+                   node.skin >= 0 ? Eigen::Matrix4d::Identity() : world[i]});
   }
   return out;
+}
+
+Eigen::Matrix4d to_first(const std::vector<MeshInstance>& instances, const MeshInstance& instance) {
+  const Eigen::Matrix4d& first = instances.front().world;
+  const Eigen::Matrix4d inverse = first.inverse();
+  // Without a detour over the inverse, places keep their last digit.
+  if (instance.world == first && inverse.allFinite()) return Eigen::Matrix4d::Identity();
+  return inverse * instance.world;
 }
 
 }  // namespace crosspatch

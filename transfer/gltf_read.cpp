@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <new>
@@ -45,16 +46,12 @@ class SoupBuilder {
 
   Status add_instances(const std::vector<MeshInstance>& instances) {
     if (instances.empty()) return fail(ErrorCode::kBadInput, "the scene shows no mesh");
-    const Eigen::Matrix4d& first = instances.front().world;
-    const Eigen::Matrix4d to_first = first.inverse();
-    if (!to_first.allFinite())
+    if (!to_first(instances, instances.front()).allFinite())
       return fail(ErrorCode::kBadInput, "the first mesh node's transform has no inverse");
-    soup_.node_transform = first;
+    soup_.node_transform = instances.front().world;
     for (const MeshInstance& instance : instances) {
-      skinned_ = skinned_ || instance.skinned;
-      const Eigen::Matrix4d relative = instance.world == first
-                                           ? Eigen::Matrix4d(Eigen::Matrix4d::Identity())
-                                           : Eigen::Matrix4d(to_first * instance.world);
+      soup_.skinned = soup_.skinned || instance.skin >= 0;
+      const Eigen::Matrix4d relative = to_first(instances, instance);
       int p = 0;
       for (const auto& primitive : model_.meshes[idx(instance.mesh)].primitives) {
         if (Status s = add_primitive(primitive, relative); !s)
@@ -71,9 +68,13 @@ class SoupBuilder {
         positions_.data(), static_cast<Eigen::Index>(positions_.size() / 3), 3);
     for (auto& set : soup_.uv_sets) set.resize(idx(soup_.corner_count()), {kUnset, kUnset});
     pad_corners();
-    if (skinned_) soup_.notes.emplace_back("skin passed over: the mesh is read in its bind pose");
-    if (morphed_) soup_.notes.emplace_back("morph targets passed over");
-    if (!model_.animations.empty()) soup_.notes.emplace_back("animations passed over");
+    soup_.animations = static_cast<int>(model_.animations.size());
+    if (soup_.skinned) soup_.notes.emplace_back("has a skin: the mesh is read in its bind pose");
+    if (soup_.morph_targets > 0)
+      soup_.notes.push_back(
+          fmt::format("has {} morph targets: the mesh is read without", soup_.morph_targets));
+    if (soup_.animations > 0)
+      soup_.notes.push_back(fmt::format("has {} animations", soup_.animations));
     if (passed_over_ > 0)
       soup_.notes.push_back(
           fmt::format("{} primitives of points or lines passed over", passed_over_));
@@ -122,18 +123,14 @@ class SoupBuilder {
   }
 
   Status add_primitive(const tinygltf::Primitive& primitive, const Eigen::Matrix4d& transform) {
+    if (!has_triangles(primitive)) {
+      ++passed_over_;
+      return {};
+    }
+    soup_.morph_targets = std::max(soup_.morph_targets, static_cast<int>(primitive.targets.size()));
     const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
-    if (mode < TINYGLTF_MODE_TRIANGLES || mode > TINYGLTF_MODE_TRIANGLE_FAN) {
-      ++passed_over_;
-      return {};
-    }
-    morphed_ = morphed_ || !primitive.targets.empty();
-    const auto position = primitive.attributes.find("POSITION");
-    if (position == primitive.attributes.end()) {
-      ++passed_over_;
-      return {};
-    }
-    const auto points = read_accessor(model_, position->second, limits_.max_vertices);
+    const auto points =
+        read_accessor(model_, primitive.attributes.at("POSITION"), limits_.max_vertices);
     if (!points) return tl::unexpected(points.error());
     if (Status s = expect_components(*points, 3, 3, "POSITION"); !s) return s;
     const auto order = corner_order(primitive, points->count());
@@ -249,7 +246,6 @@ class SoupBuilder {
   const ReadLimits& limits_;
   PolygonSoup soup_;
   std::vector<double> positions_;  // three a vertex
-  bool skinned_ = false, morphed_ = false;
   int passed_over_ = 0;
 };
 

@@ -13,6 +13,8 @@
 #include <tuple>
 
 #include "core/index.hpp"
+#include "transfer/gltf_buffer.hpp"
+#include "transfer/gltf_write_motion.hpp"
 #include "transfer/vertex_buffer.hpp"
 
 namespace crosspatch {
@@ -98,58 +100,13 @@ class Writer {
     return text;
   }
 
-  /// Appends bytes to the buffer and returns their view. `target` 0: not for vertices or indices.
-  int add_view(const void* data, std::size_t size, int target) {
-    auto& bytes = model_.buffers[0].data;
-    bytes.resize((bytes.size() + 3) / 4 * 4);
-    tinygltf::BufferView view;
-    view.buffer = 0;
-    view.byteOffset = bytes.size();
-    view.byteLength = size;
-    view.target = target;
-    const auto* begin = static_cast<const unsigned char*>(data);
-    bytes.insert(bytes.end(), begin, begin + size);
-    bytes.resize((bytes.size() + 3) / 4 * 4);
-    model_.bufferViews.push_back(view);
-    return static_cast<int>(model_.bufferViews.size()) - 1;
-  }
-
-  int add_accessor(int view, int component, int type, std::size_t count) {
-    tinygltf::Accessor accessor;
-    accessor.bufferView = view;
-    accessor.componentType = component;
-    accessor.type = type;
-    accessor.count = count;
-    model_.accessors.push_back(accessor);
-    return static_cast<int>(model_.accessors.size()) - 1;
-  }
-
-  template <std::size_t N>
-  int add_attribute(const std::vector<std::array<float, N>>& values, int type) {
-    const int view =
-        add_view(values.data(), values.size() * sizeof values[0], TINYGLTF_TARGET_ARRAY_BUFFER);
-    return add_accessor(view, TINYGLTF_COMPONENT_TYPE_FLOAT, type, values.size());
-  }
-
-  int add_positions(const std::vector<std::array<float, 3>>& positions) {
-    const int index = add_attribute(positions, TINYGLTF_TYPE_VEC3);
-    auto& accessor = model_.accessors[idx(index)];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto [least, most] = std::minmax_element(
-          positions.begin(), positions.end(), [k](const auto& a, const auto& b) {
-            return a[k] < b[k];
-          });
-      accessor.minValues.push_back(double((*least)[k]));
-      accessor.maxValues.push_back(double((*most)[k]));
-    }
-    return index;
-  }
-
   int add_indices(const VertexBuffer& vertices) {
     const auto add = [&](const auto& values, int component) {
-      const int view = add_view(
-          values.data(), values.size() * sizeof values[0], TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
-      return add_accessor(view, component, TINYGLTF_TYPE_SCALAR, values.size());
+      const int view = add_view(model_,
+                                values.data(),
+                                values.size() * sizeof values[0],
+                                TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+      return add_accessor(model_, view, component, TINYGLTF_TYPE_SCALAR, values.size());
     };
     // 65535 itself restarts a primitive.
     if (vertices.positions.size() > std::numeric_limits<std::uint16_t>::max())
@@ -163,15 +120,19 @@ class Writer {
     tinygltf::Primitive p;
     p.mode = TINYGLTF_MODE_TRIANGLES;
     p.material = static_cast<int>(model_.materials.size()) - 1;
-    p.attributes["POSITION"] = add_positions(vertices.positions);
-    p.attributes["NORMAL"] = add_attribute(vertices.normals, TINYGLTF_TYPE_VEC3);
+    p.attributes["POSITION"] = add_places(model_, vertices.positions);
+    p.attributes["NORMAL"] =
+        add_attribute(model_, vertices.normals, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3);
     if (!vertices.tangents.empty())
-      p.attributes["TANGENT"] = add_attribute(vertices.tangents, TINYGLTF_TYPE_VEC4);
+      p.attributes["TANGENT"] = add_attribute(
+          model_, vertices.tangents, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC4);
     for (std::size_t s = 0; s < vertices.uv_sets.size(); ++s)
-      p.attributes[fmt::format("TEXCOORD_{}", s)] =
-          add_attribute(vertices.uv_sets[s], TINYGLTF_TYPE_VEC2);
+      p.attributes[fmt::format("TEXCOORD_{}", s)] = add_attribute(
+          model_, vertices.uv_sets[s], TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC2);
     if (!vertices.colors.empty())
-      p.attributes["COLOR_0"] = add_attribute(vertices.colors, TINYGLTF_TYPE_VEC4);
+      p.attributes["COLOR_0"] =
+          add_attribute(model_, vertices.colors, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC4);
+    write_moving_vertices(model_, mesh_.motion, vertices.rows, p);
     p.indices = add_indices(vertices);
     return p;
   }
@@ -187,7 +148,7 @@ class Writer {
     tinygltf::Image out;
     out.name = file.name;
     out.mimeType = file.mime_type;
-    if (!images_beside_) out.bufferView = add_view(file.bytes.data(), file.bytes.size(), 0);
+    if (!images_beside_) out.bufferView = add_view(model_, file.bytes.data(), file.bytes.size(), 0);
     model_.images.push_back(std::move(out));
     return image_[image] = static_cast<int>(model_.images.size()) - 1;
   }
@@ -268,6 +229,7 @@ class Writer {
     model_.nodes.push_back(node);
     tinygltf::Scene scene;
     scene.nodes = {0};
+    for (const int beside : write_motion(model_, mesh_)) scene.nodes.push_back(beside);
     model_.scenes.push_back(scene);
     model_.defaultScene = 0;
   }

@@ -12,9 +12,10 @@ namespace crosspatch {
 /// material in use, images in buffer views with their original bytes.
 ///
 /// Writes positions, normals, every UV set, vertex colours, and tangents where the material has a
-/// normal map; samplers, factors, alpha mode, and KHR_texture_transform where used. Materials and
-/// images nothing refers to are left out. kInternal when `mesh` breaks an invariant; kOutput when
-/// there is no triangle, an image in use is neither PNG nor JPEG, or the file would pass 4 GiB.
+/// normal map; joints, weights and morph targets with their skeleton and animations; samplers,
+/// factors, alpha mode, and KHR_texture_transform where used. Materials and images nothing refers
+/// to are left out. kInternal when `mesh` breaks an invariant; kOutput when there is no triangle,
+/// an image in use is neither PNG nor JPEG, or the file would pass 4 GiB.
 Result<std::string> encode_glb(const TexturedMesh& mesh);
 
 /// The same as JSON "STEM.gltf", its buffer "STEM.bin" and images "STEM_NAME" beside it. Images

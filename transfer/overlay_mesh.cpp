@@ -102,6 +102,7 @@ class Builder {
 
   OverlayMesh build() {
     mesh_.points = map_.target;
+    mesh_.map_points = map_.point_count();
     mesh_.target_vertex.assign(mesh_.points.size(), false);
     point_of_vertex_ = map_.point_of_target_vertex;
     point_of_vertex_.resize(idx(target_.vertex_count()), -1);

@@ -35,6 +35,7 @@ struct OverlayMesh {
     bool alive = true;
   };
   std::vector<SurfacePoint> points;  ///< on the target
+  int map_points = 0;                ///< the first of them are those of the map, in its order
   std::vector<bool> target_vertex;   ///< per point: is a vertex of the target
   std::vector<int> wedge_point;
   std::vector<double> attributes;

@@ -45,9 +45,35 @@ Status check_materials(const TexturedMesh& mesh) {
   return {};
 }
 
+Status check_skin(const TexturedMesh& mesh) {
+  if (!mesh.motion.skin) return {};
+  const Skin& skin = *mesh.motion.skin;
+  for (const SkeletonNode& node : skin.nodes)
+    if (!node.bind.topLeftCorner<3, 3>().isIdentity(0))
+      return fail(ErrorCode::kInternal,
+                  fmt::format("textured mesh: joint \"{}\" is turned in the bind pose", node.name));
+  constexpr double kUnits = 1 << 20;  // sums of such fractions are exact
+  for (Eigen::Index v = 0; v < skin.weights.rows(); ++v) {
+    int count = 0;
+    double sum = 0;
+    bool exact = true;
+    for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator w(skin.weights, v); w; ++w) {
+      ++count;
+      sum += w.value();
+      exact = exact && w.value() * kUnits == std::floor(w.value() * kUnits);
+    }
+    if (count < 1 || count > 4 || sum != 1 || !exact)
+      return fail(ErrorCode::kInternal,
+                  fmt::format("textured mesh: vertex {} has {} weights of sum {}", v, count, sum));
+  }
+  return {};
+}
+
 }  // namespace
 
 Status validate(const TexturedMesh& mesh) {
+  if (Status s = validate(mesh.motion, static_cast<int>(mesh.positions.rows())); !s) return s;
+  if (Status s = check_skin(mesh); !s) return s;
   if (Status s = check_sizes(mesh); !s) return s;
   if (Status s = check_materials(mesh); !s) return s;
   if (mesh.triangle_count() > 0 &&

@@ -7,6 +7,7 @@
 #include "core/result.hpp"
 #include "core/soup.hpp"
 #include "core/types.hpp"
+#include "transfer/motion.hpp"
 
 namespace crosspatch {
 
@@ -18,7 +19,9 @@ namespace crosspatch {
 /// Invariants: (1) triangles index rows of `positions`; (2) material and target_face have one entry
 /// a triangle, `normals`, `colors` (unless empty) and every UV set one a corner; (3) every position
 /// and UV is finite, every normal has length 1 or is zero; (4) material indexes `materials`,
-/// textures index `images` and `uv_sets`, or have image -1.
+/// textures index `images` and `uv_sets`, or have image -1; (5) `motion` is valid for the
+/// positions, bind frames are translations, and a vertex follows at most four joints with weights
+/// whose sum is 1 in single precision, whatever the order.
 struct TexturedMesh {
   MatrixX3d positions;
   MatrixX3i triangles;
@@ -30,6 +33,8 @@ struct TexturedMesh {
   std::vector<Material> materials;
   std::vector<ImageFile> images;
   Eigen::Matrix4d node_transform = Eigen::Matrix4d::Identity();
+  std::vector<int> map_point;  ///< empty, or per position its point of the map, -1 if it has none
+  Motion motion;               ///< of the positions; frames of the skeleton are not turned
 
   [[nodiscard]] int triangle_count() const { return static_cast<int>(triangles.rows()); }
 };

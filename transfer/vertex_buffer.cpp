@@ -15,7 +15,8 @@ std::array<float, 3> to_float(const Vector3d& v) {
 
 class Welder {
  public:
-  Welder(const TexturedMesh& mesh, int material, int tangent_uv_set) : mesh_(mesh) {
+  Welder(const TexturedMesh& mesh, int material, int tangent_uv_set)
+      : mesh_(mesh), moves_(mesh.motion.skin || !mesh.motion.morphs.empty()) {
     buffer_.uv_sets.resize(mesh.uv_sets.size());
     if (tangent_uv_set >= 0) tangents_ = corner_tangents(mesh, material, tangent_uv_set);
   }
@@ -50,6 +51,8 @@ class Welder {
     };
     const int corner = 3 * t + k;
     const auto unit = to_float(shading_normal(mesh_, t, k));
+    const int row = mesh_.triangles(t, k);
+    if (moves_) key_.append(reinterpret_cast<const char*>(&row), sizeof row);
     append(place);
     append(unit);
     std::vector<std::array<float, 2>> uvs;
@@ -62,6 +65,7 @@ class Welder {
     const auto [entry, fresh] =
         vertex_of_key_.try_emplace(key_, static_cast<std::uint32_t>(buffer_.positions.size()));
     if (!fresh) return entry->second;
+    buffer_.rows.push_back(row);
     buffer_.positions.push_back(place);
     buffer_.normals.push_back(unit);
     for (std::size_t s = 0; s < uvs.size(); ++s) buffer_.uv_sets[s].push_back(uvs[s]);
@@ -71,6 +75,7 @@ class Welder {
   }
 
   const TexturedMesh& mesh_;
+  bool moves_;
   std::vector<Eigen::Vector4d> tangents_;  ///< per corner, or empty
   VertexBuffer buffer_;
   std::string key_;

@@ -11,21 +11,22 @@ namespace crosspatch {
 /// The triangles of one material as graphics hardware wants them: single precision, one index for
 /// all attributes, every vertex once.
 ///
-/// Invariants: (1) `normals`, every UV set, `colors` (unless empty) and `tangents` (unless empty)
-/// have one entry a position; (2) three indices a triangle, none of them flat; (3) every vertex is
-/// used; (4) normals and the first three entries of tangents have length 1.
+/// Invariants: (1) `normals`, every UV set, `colors` (unless empty), `tangents` (unless empty)
+/// and `rows` have one entry a position; (2) three indices a triangle, none of them flat; (3) every
+/// vertex is used; (4) normals and the first three entries of tangents have length 1.
 struct VertexBuffer {
   std::vector<std::array<float, 3>> positions;
   std::vector<std::array<float, 3>> normals;
   std::vector<std::vector<std::array<float, 2>>> uv_sets;
   std::vector<std::array<float, 4>> colors;
   std::vector<std::array<float, 4>> tangents;  ///< w = 1 or -1: side of the bitangent
+  std::vector<int> rows;                       ///< of the mesh's positions
   std::vector<std::uint32_t> indices;
   int dropped_triangles = 0;  ///< flat after rounding to single precision
 };
 
-/// Welds the corners of the triangles of `material` that agree in every attribute, vertices in
-/// order of first use.
+/// Welds the corners of the triangles of `material` that agree in every attribute, and in their
+/// position's row if the mesh moves; vertices in order of first use.
 ///
 /// With `tangent_uv_set` each vertex gets a tangent along increasing u of that set, see
 /// corner_tangents.

@@ -8,8 +8,11 @@
 
 #include "core/index.hpp"
 #include "shapes.hpp"
+#include "transfer/carry_motion.hpp"
 #include "transfer/carry_texture.hpp"
+#include "transfer/gltf_motion.hpp"
 #include "transfer/gltf_write.hpp"
+#include "transfer/rig.hpp"
 #include "transfer/surfaces.hpp"
 
 namespace crosspatch {
@@ -86,6 +89,30 @@ int write(const std::string& path, const shapes::Surface& s) {
   return file.good() ? 0 : 1;
 }
 
+/// A copy of a globe, turned and larger, that bends at a knee and has morph targets.
+int write_moving(const std::string& path) {
+  shapes::Surface source = globe(3), target = globe(3);
+  TriangleMesh& copy = target.prepared.mesh;
+  copy.V = (3 * copy.V * rig::frame({0, 0, 0}, 0.5, {1, 2, 0}).topLeftCorner<3, 3>()).eval();
+  target.soup.node_transform(1, 3) = 5;
+  const std::string file = path + ".source.glb";
+  std::ofstream(file, std::ios::binary)
+      << rig::file(source.prepared.mesh.V, source.prepared.mesh.F).glb();
+  const auto motion = read_gltf_motion(file, {.skin = true, .morphs = true});
+  std::remove(file.c_str());
+  const SurfaceMap map = identity_map(source.prepared.mesh);
+  auto carried = carry_texture(source.view(), target.view(), map);
+  if (!motion || !carried) return 1;
+  auto moved = carry_motion(motion->motion, source.view(), target.view(), map, carried->mesh);
+  if (!moved) return 1;
+  carried->mesh.motion = std::move(moved->motion);
+  const auto bytes = encode_glb(carried->mesh);
+  if (!bytes) return 1;
+  std::ofstream out(path, std::ios::binary);
+  out << *bytes;
+  return out.good() ? 0 : 1;
+}
+
 /// Half of the faces have no UVs for their texture.
 shapes::Surface torn() {
   shapes::Surface s = globe(2);
@@ -102,7 +129,7 @@ int main(int argc, char** argv) {
   if (argc != 2) return 2;
   const std::string folder = std::string(argv[1]) + "/";
   return write(folder + "globe.glb", globe(3)) + write(folder + "everything.glb", everything()) +
-         write(folder + "torn.glb", torn()) +
+         write(folder + "torn.glb", torn()) + write_moving(folder + "moving.glb") +
          write(folder + "plain.glb", shapes::surface_of(shapes::torus(2, 1, 30, 20))) +
          write(folder + "wide.glb", shapes::surface_of(shapes::icosphere(7)));
 }

@@ -16,6 +16,7 @@
 #include "tools/sha256.hpp"
 #include "tools/text_lines.hpp"
 #include "tools/viewer.hpp"
+#include "transfer/rig.hpp"
 
 namespace crosspatch {
 namespace {
@@ -429,6 +430,49 @@ TEST_F(PairOfSurfaces, AttributesThatDoNotFitAreRefused) {
                2,
                "2 times");
   expect_error(start + "a.csv --attributes b/a.csv", 2, "named twice");
+}
+
+TEST_F(PairOfSurfaces, SkinsAndMorphTargetsAreCarried) {
+  const TriangleMesh mesh = egg(1.6);
+  write("source.glb", rig::file(mesh.V, mesh.F).glb());
+  const std::string start =
+      "transfer source.glb target.off --landmarks pairs.txt --json out/a.json ";
+  const auto report = [&] { return nlohmann::json::parse(test::read_text(folder / "out/a.json")); };
+  for (const std::string mode : {"keep", "bake --size 16 --texture checker"}) {
+    const test::Outcome done = run(start + "--skin --morphs --output out/a.gltf --mode " + mode);
+    ASSERT_EQ(done.exit_code, 0) << done.err;
+    EXPECT_THAT(done.err, HasSubstr("2 joints, 2 morph targets, 1 animation"));
+    EXPECT_EQ(done.err.find("not carried"), std::string::npos) << done.err;
+    EXPECT_EQ(report()["quality"]["skin_joints"], 2);
+    EXPECT_EQ(report()["quality"]["motion_unmapped_positions"], 0);
+    const auto gltf = nlohmann::json::parse(test::read_text(folder / "out/a.gltf"));
+    EXPECT_EQ(gltf["skins"][0]["joints"].size(), 2u);
+    EXPECT_EQ(gltf["meshes"][0]["extras"]["targetNames"], nlohmann::json({"puffed", "bent"}));
+    EXPECT_EQ(gltf["animations"][0]["channels"].size(), 4u);
+  }
+  // What stays behind is told.
+  const test::Outcome plain = run(start + "--output out/a.glb");
+  EXPECT_EQ(plain.exit_code, 0) << plain.err;
+  EXPECT_THAT(plain.err,
+              HasSubstr("the source has what is not carried: a skin (--skin), 2 morph targets "
+                        "(--morphs), 1 animation"));
+  // And what moves can be the source again.
+  ASSERT_EQ(run(start + "--skin --output out/b.glb").exit_code, 0);
+  const test::Outcome again = run("transfer out/b.glb source.obj --skin --output out/c.glb");
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+}
+
+TEST_F(PairOfSurfaces, MotionThatIsNotThereIsRefused) {
+  const std::string start = "transfer source.obj target.off --landmarks pairs.txt ";
+  expect_error(start + "--skin --output out/a.glb", 3, "source.obj: has no skin");
+  expect_error(start + "--morphs --output out/a.glb", 3, "source.obj: has no morph targets");
+  expect_error(start + "--skin --output out/a.obj", 2, "--skin: only a .glb or .gltf can hold it");
+  expect_error(start + "--morphs --output out/a.ply", 2, "--morphs: only a .glb or .gltf");
+  const TriangleMesh mesh = egg(1.6);
+  files::Gltf spoilt = rig::file(mesh.V, mesh.F);
+  spoilt.json["skins"][0]["joints"] = {2, 2};
+  write("spoilt.glb", spoilt.glb());
+  expect_error("transfer spoilt.glb target.off --skin --output out/a.glb", 3, "comes twice");
 }
 
 TEST_F(PairOfSurfaces, MatchesNameVerticesOfBothFilesOnce) {
