@@ -65,11 +65,11 @@ Weights weights_at(const Skin& skin, const Place& place) {
 double keep_largest(Weights& weights) {
   constexpr std::size_t kMost = 4;
   constexpr double kUnits = 1 << 20;
-  double total = 0, kept = 0;
-  for (const auto& entry : weights) total += entry.second;
+  double kept = 0, dropped = 0;
   std::sort(weights.begin(), weights.end(), [](const auto& a, const auto& b) {
     return a.second != b.second ? a.second > b.second : a.first < b.first;
   });
+  for (std::size_t i = kMost; i < weights.size(); ++i) dropped += weights[i].second;
   weights.resize(std::min(weights.size(), kMost));
   for (const auto& entry : weights) kept += entry.second;
   double rest = 1;
@@ -78,11 +78,11 @@ double keep_largest(Weights& weights) {
   weights.front().second += rest;
   while (weights.back().second == 0) weights.pop_back();
   std::sort(weights.begin(), weights.end());
-  return (total - kept) / total;
+  return dropped / (kept + dropped);
 }
 
-/// Per row the row whose values it takes: itself where `has`, else the nearest along edges; 0 where
-/// there is none.
+/// Per row the row whose values it takes: itself where `has`, else the nearest along edges; -1
+/// where there is none.
 std::vector<int> givers(const TexturedMesh& mesh, const std::vector<bool>& has) {
   std::vector<std::vector<int>> around(has.size());
   for (int t = 0; t < mesh.triangle_count(); ++t)
@@ -136,7 +136,7 @@ Skin carried_skin(const Skin& skin,
   return carried;
 }
 
-/// `turn_only`: scales of the frames are left out.
+/// The vectors at the vertices of the source's file, interpolated and put through the frames.
 MatrixX3d carried_vectors(const MatrixX3d& vectors,
                           const std::vector<Place>& places,
                           const std::vector<int>& giver,
