@@ -8,6 +8,7 @@
 
 #include "param/cell_relaxation.hpp"
 #include "param/overlay.hpp"
+#include "param/sphere_orientation.hpp"
 #include "param/sphere_refinement.hpp"
 #include "param/unfold.hpp"
 #include "param/untangle.hpp"
@@ -247,7 +248,39 @@ void SphereMap::settle() {
            relax_cells(b, source_.mesh, X_, pinned, Y_);
 }
 
+void SphereMap::join_close_vertices() {
+  constexpr double kClose = 1e-4;  // of the shortest edge at either: nobody sees such a slip
+  const auto shortest = [](const TriangleMesh& mesh, const MatrixX3d& X, int v) {
+    double length = 1;
+    for_each_outgoing(
+        mesh, v, [&](int h) { length = std::min(length, (X.row(v) - X.row(mesh.to(h))).norm()); });
+    return length;
+  };
+  const TriangleMesh &a = source_.mesh, &b = target_.mesh;
+  int face = 0;
+  for (int v = 0; v < a.vertex_count(); ++v) {
+    const Eigen::RowVector3d x = X_.row(v);
+    face = lift_.locate(x.transpose(), face);
+    int nearest = b.F(face, 0);
+    for (int k = 1; k < 3; ++k)
+      if ((Y_.row(b.F(face, k)) - x).norm() < (Y_.row(nearest) - x).norm()) nearest = b.F(face, k);
+    const double distance = (Y_.row(nearest) - x).norm();
+    if (distance == 0 || distance > kClose * std::min(shortest(a, X_, v), shortest(b, Y_, nearest)))
+      continue;
+    X_.row(v) = Y_.row(nearest);
+    bool turns = false;
+    for_each_outgoing(a, v, [&](int h) {
+      const int f = h / 3;
+      turns = turns || !(sphere_orientation(X_.row(a.F(f, 0)).transpose(),
+                                            X_.row(a.F(f, 1)).transpose(),
+                                            X_.row(a.F(f, 2)).transpose()) > 0);
+    });
+    if (turns) X_.row(v) = x;
+  }
+}
+
 Result<SurfaceMap> SphereMap::overlay() {
+  join_close_vertices();
   MatrixX3d& Y = Y_;
   constexpr int kTries = 100;
   Result<SurfaceMap> map = fail(ErrorCode::kInternal, "overlay: not tried");

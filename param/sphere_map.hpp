@@ -57,7 +57,9 @@ class SphereMap {
   /// same energy of the inverse map, and then the source's again: each side only sees what happens
   /// at its own vertices.
   void settle();
-  /// The common subdivision; vertices in special position are moved by a billionth of their edges.
+  /// The common subdivision. Vertices of the source that all but meet one of the target are made to
+  /// meet it, since no file in single precision holds what lies between; vertices in special
+  /// position are moved by a billionth of their edges.
   Result<SurfaceMap> overlay();
 
  private:
@@ -68,6 +70,8 @@ class SphereMap {
   Status split_back(double growth);
   /// Turns faces back, and where that does not help collapses vertices of the level.
   Status untangle(const SphereProblem& problem);
+  /// See overlay().
+  void join_close_vertices();
   /// Lets go of the landmarks that only decided the homotopy class. True if there were any.
   bool release();
   double descend(int iterations);

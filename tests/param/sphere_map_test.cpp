@@ -338,6 +338,16 @@ TEST(MatchAndMap, RecoversTheSameSurfaceInOtherTriangles) {
   EXPECT_LT(slips(target, source).first, 2e-3);
 }
 
+TEST(MatchAndMap, OfASurfaceOntoItselfIsItsOwnMesh) {
+  const TriangleMesh mesh = limbed(3);
+  const auto matched = match_and_map(mesh, mesh, {}, {});
+  ASSERT_TRUE(matched) << matched.error().message;
+  const SurfaceMap& map = matched->result.map;
+  EXPECT_EQ(map.polygon_count(), mesh.face_count());
+  EXPECT_EQ(map.point_count(), mesh.vertex_count());
+  EXPECT_EQ(map.source_face, map.target_face);
+}
+
 TEST(MakeShape, NamesATopologyItCannotMap) {
   const auto shape = make_shape(normalized(shapes::torus(2, 1, 12, 8)), {});
   ASSERT_FALSE(shape);
