@@ -32,7 +32,10 @@ letters() {
 letters samples/letters.obj keep
 letters samples/letters.obj baked --mode bake --size 512
 letters "$scratch/plain.obj" atlas --mode bake --size 512
-node tests/gltf/validate.mjs "$scratch"/*.glb
+copied=()
+spot_image=${CROSSPATCH_DATA:-../shared/data}/textured/spot_texture.png
+[ ! -e "$spot_image" ] || copied=(--copied "$spot_image")
+node tests/gltf/validate.mjs "${copied[@]}" "$scratch"/*.glb
 node tests/gltf/view.mjs "$scratch" "$scratch"/*.glb
 node tests/gltf/view.mjs --letters samples/letters.png "$scratch" "$scratch"/letters_*.glb
 blender -b --factory-startup --python-exit-code 1 --python tests/gltf/blender.py -- \

@@ -21,9 +21,9 @@ keep() {
 }
 
 keep letters samples/letters.obj samples/letters.obj
-node tests/gltf/keep_test.mjs samples/letters.obj samples/letters.obj "$folder/letters.overlay" "$folder/letters.glb"
 rm "$folder/letters.glb"  # turned: its letters stand on other sides
 keep lira_tola samples/lira.obj samples/tola.obj
+node tests/gltf/keep_test.mjs samples/lira.obj samples/tola.obj "$folder/lira_tola.overlay" "$folder/lira_tola.glb"
 keep bodo_lira samples/bodo.obj samples/lira.obj
 
 # The same surface, finer, by the map that leaves every point where it is.
