@@ -5,12 +5,17 @@
 // of residuals.
 #include "param/unfold.hpp"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <Eigen/SparseCholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "core/union_find.hpp"
 #include "param/sphere_orientation.hpp"
 #include "param/untangle.hpp"
 
@@ -28,32 +33,38 @@ size_t at(int i) {
 
 class Unfolder {
  public:
-  Unfolder(const SphereProblem& problem, MatrixX3d& X) : problem_(problem), X_(X) {
-    unknown_.assign(at(static_cast<int>(X.rows())), -1);
-    for (const int v : problem.F.reshaped())
-      if (unknown_[at(v)] < 0 && !problem.fixed[at(v)]) {
-        unknown_[at(v)] = 2 * static_cast<int>(free_.size());
-        free_.push_back(v);
-      }
-    for (int f = 0; f < problem.F.rows(); ++f)
-      if (unknown_[at(problem.F(f, 0))] >= 0 || unknown_[at(problem.F(f, 1))] >= 0 ||
-          unknown_[at(problem.F(f, 2))] >= 0)
-        faces_.push_back(f);
+  /// `faces` are all that have a vertex among the `movable` ones.
+  Unfolder(const SphereProblem& problem,
+           std::vector<int> movable,
+           std::vector<int> faces,
+           MatrixX3d& X)
+      : problem_(problem), X_(X), free_(std::move(movable)), faces_(std::move(faces)) {
     F_ = problem.F(faces_, Eigen::all);
     covered_ = covered_area(F_, X);
+    build_pattern();
   }
 
+  /// Returns the number of faces that are left turned.
   int run() {
     constexpr int kMostIterations = 60;
     epsilon_ = 1;
     lower_epsilon(1);
-    for (int i = 0; i < kMostIterations && turned_faces(F_, X_) > 0; ++i) {
-      const double before = energy(X_);
+    int left = turned_faces(F_, X_);
+    double before = energy(X_);
+    for (int i = 0; i < kMostIterations && left > 0; ++i) {
       const double after = step(before);
       if (!(after < before)) break;
       lower_epsilon(after / before);
+      before = energy(X_);
+      left = turned_faces(F_, X_);
     }
-    return turned_faces(F_, X_);
+    return left;
+  }
+
+  [[nodiscard]] int turned() const { return turned_faces(F_, X_); }
+
+  void move_back(const MatrixX3d& X) {
+    for (const int v : free_) X_.row(v) = X.row(v);
   }
 
   /// Improves shapes where no face is turned: the energy is a barrier then.
@@ -126,67 +137,103 @@ class Unfolder {
   }
 
   [[nodiscard]] double energy(const MatrixX3d& X) const {
-    double sum = 0;
-    for (const int f : faces_) sum += residuals(X, f, nullptr).squaredNorm();
-    return sum;
+    Eigen::VectorXd energies(static_cast<Eigen::Index>(faces_.size()));
+    tbb::parallel_for(tbb::blocked_range<int>(0, static_cast<int>(faces_.size()), kGrain),
+                      [&](const tbb::blocked_range<int>& range) {
+                        for (int i = range.begin(); i < range.end(); ++i)
+                          energies[i] = residuals(X, faces_[at(i)], nullptr).squaredNorm();
+                      });
+    return energies.sum();
+  }
+
+  /// Numbers the unknowns; where the entries of every face go in the system's lower triangle.
+  void build_pattern() {
+    std::vector<int> unknown(problem_.fixed.size(), -1);
+    for (size_t i = 0; i < free_.size(); ++i) unknown[at(free_[i])] = 2 * static_cast<int>(i);
+    const int n = 2 * static_cast<int>(free_.size());
+    unknowns_.resize(faces_.size());
+    std::vector<Eigen::Triplet<double>> entries;
+    for (size_t i = 0; i < faces_.size(); ++i)
+      for (int a = 0; a < 6; ++a) {
+        const int u = unknown[at(F_(static_cast<Eigen::Index>(i), a / 2))];
+        unknowns_[i][at(a)] = u < 0 ? -1 : u + a % 2;
+      }
+    for (const auto& u : unknowns_)
+      for (const int i : u)
+        for (const int j : u)
+          if (j >= 0 && i >= j) entries.emplace_back(i, j, 0.0);
+    H_.resize(n, n);
+    H_.setFromTriplets(entries.begin(), entries.end());
+    solver_.analyzePattern(H_);
+  }
+
+  double& entry(int row, int column) {
+    const int* begin = H_.innerIndexPtr() + H_.outerIndexPtr()[column];
+    const int* end = H_.innerIndexPtr() + H_.outerIndexPtr()[column + 1];
+    return H_.valuePtr()[std::lower_bound(begin, end, row) - H_.innerIndexPtr()];
   }
 
   /// One Gauss-Newton step with backtracking; the new energy, or `before` if no step is lower.
   double step(double before) {
-    const int n = 2 * static_cast<int>(free_.size());
-    std::vector<Eigen::Triplet<double>> entries;
-    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
+    struct FaceSystem {
+      Eigen::Matrix<double, 6, 6> H;
+      Eigen::Matrix<double, 6, 1> g;
+    };
+    std::vector<FaceSystem> systems(faces_.size());
+    tbb::parallel_for(tbb::blocked_range<int>(0, static_cast<int>(faces_.size()), kGrain),
+                      [&](const tbb::blocked_range<int>& range) {
+                        for (int i = range.begin(); i < range.end(); ++i) {
+                          Matrix86 D = Matrix86::Zero();
+                          const Residuals r = residuals(X_, faces_[at(i)], &D);
+                          systems[at(i)] = {D.transpose() * D, D.transpose() * r};
+                        }
+                      });
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(H_.rows());
+    std::fill(H_.valuePtr(), H_.valuePtr() + H_.nonZeros(), 0.0);
     double trace = 0;
-    for (const int f : faces_) {
-      Matrix86 D = Matrix86::Zero();
-      const Residuals r = residuals(X_, f, &D);
-      const Eigen::Matrix<double, 6, 6> H = D.transpose() * D;
-      const Eigen::Matrix<double, 6, 1> g = D.transpose() * r;
+    for (size_t f = 0; f < faces_.size(); ++f)
       for (int a = 0; a < 6; ++a) {
-        const int i = unknown_[at(problem_.F(f, a / 2))];
+        const int i = unknowns_[f][at(a)];
         if (i < 0) continue;
-        gradient[i + a % 2] += g[a];
-        trace += H(a, a);
+        gradient[i] += systems[f].g[a];
+        trace += systems[f].H(a, a);
         for (int b = 0; b < 6; ++b)
-          if (const int j = unknown_[at(problem_.F(f, b / 2))]; j >= 0 && i + a % 2 >= j + b % 2)
-            entries.emplace_back(i + a % 2, j + b % 2, H(a, b));
+          if (const int j = unknowns_[f][at(b)]; j >= 0 && i >= j)
+            entry(i, j) += systems[f].H(a, b);
       }
-    }
-    for (int i = 0; i < n; ++i) entries.emplace_back(i, i, 1e-9 * trace / n);
-    SparseMatrix H(n, n);
-    H.setFromTriplets(entries.begin(), entries.end());
-    if (!analyzed_) solver_.analyzePattern(H);
-    analyzed_ = true;
-    solver_.factorize(H);
+    const double damping = 1e-9 * trace / static_cast<double>(H_.rows());
+    for (int i = 0; i < H_.rows(); ++i) entry(i, i) += damping;
+    solver_.factorize(H_);
     if (solver_.info() != Eigen::Success) return before;
     const Eigen::VectorXd direction = solver_.solve(-gradient);
+    const MatrixX3d start = X_(free_, Eigen::all);
     constexpr int kHalvings = 20;
     double t = 1;
     for (int i = 0; i < kHalvings; ++i, t /= 2) {
-      MatrixX3d X = X_;
-      for (const int v : free_)
-        X.row(v) = (X_.row(v).transpose() +
-                    t * basis(X_.row(v).transpose()) * direction.segment<2>(unknown_[at(v)]))
-                       .normalized()
-                       .transpose();
+      for (size_t k = 0; k < free_.size(); ++k) {
+        const Vector3d x = start.row(static_cast<Eigen::Index>(k)).transpose();
+        const Vector2d d = direction.segment<2>(2 * static_cast<Eigen::Index>(k));
+        X_.row(free_[k]) = (x + t * basis(x) * d).normalized().transpose();
+      }
       // A long step may drag a face around the back of the sphere.
-      const double e = energy(X);
-      if (!(e > 0 && e < before) || std::abs(covered_area(F_, X) - covered_) > 1) continue;
-      X_ = X;
-      return e;
+      const double e = energy(X_);
+      if (e > 0 && e < before && std::abs(covered_area(F_, X_) - covered_) <= 1) return e;
     }
+    X_(free_, Eigen::all) = start;
     return before;
   }
 
+  static constexpr int kGrain = 64;
+
   const SphereProblem& problem_;
   MatrixX3d& X_;
-  std::vector<int> unknown_;  ///< per vertex: its first coordinate's unknown, or -1
-  std::vector<int> free_;
-  std::vector<int> faces_;  ///< that can move
-  MatrixX3i F_;             ///< their corners
-  double covered_ = 0;      ///< area they cover on the sphere, signed; steps by 4 pi only
+  std::vector<int> free_;                     ///< vertices; vertex i has unknowns 2 i and 2 i + 1
+  std::vector<int> faces_;                    ///< that can move
+  MatrixX3i F_;                               ///< their corners
+  std::vector<std::array<int, 6>> unknowns_;  ///< of their corners' coordinates, -1 where fixed
+  double covered_ = 0;  ///< area they cover on the sphere, signed; steps by 4 pi only
   double epsilon_ = 1;
-  bool analyzed_ = false;
+  SparseMatrix H_;
   Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower> solver_;
 };
 
@@ -196,47 +243,91 @@ bool turned(const MatrixX3i& F, const MatrixX3d& X, int f) {
                               X.row(F(f, 2)).transpose()) > 0);
 }
 
-/// Fixes the vertices more than `rings` edges away from turned faces.
-void hold_far_vertices(const MatrixX3d& X, int rings, SphereProblem& problem) {
+/// Free vertices that hang together by faces, and all faces around them.
+struct Island {
+  std::vector<int> vertices, faces;
+};
+
+/// The connected parts of what lies within `rings` edges of turned faces.
+std::vector<Island> islands(const SphereProblem& problem, const MatrixX3d& X, int rings) {
+  const MatrixX3i& F = problem.F;
+  const auto has = [&](const std::vector<bool>& set, int f) {
+    return set[at(F(f, 0))] || set[at(F(f, 1))] || set[at(F(f, 2))];
+  };
   std::vector<bool> near(problem.fixed.size(), false);
-  for (int f = 0; f < problem.F.rows(); ++f)
-    if (turned(problem.F, X, f))
-      for (int k = 0; k < 3; ++k) near[at(problem.F(f, k))] = true;
+  for (int f = 0; f < F.rows(); ++f)
+    if (turned(F, X, f))
+      for (int k = 0; k < 3; ++k) near[at(F(f, k))] = true;
   for (int i = 0; i < rings; ++i) {
     std::vector<bool> grown = near;
-    for (int f = 0; f < problem.F.rows(); ++f)
-      if (near[at(problem.F(f, 0))] || near[at(problem.F(f, 1))] || near[at(problem.F(f, 2))])
-        for (int k = 0; k < 3; ++k) grown[at(problem.F(f, k))] = true;
+    for (int f = 0; f < F.rows(); ++f)
+      if (has(near, f))
+        for (int k = 0; k < 3; ++k) grown[at(F(f, k))] = true;
     near = std::move(grown);
   }
-  for (const int v : problem.F.reshaped())
-    if (!near[at(v)]) problem.fixed[at(v)] = true;
+  for (size_t v = 0; v < near.size(); ++v) near[v] = near[v] && !problem.fixed[v];
+  UnionFind parts(static_cast<int>(near.size()));
+  for (int f = 0; f < F.rows(); ++f)
+    for (int k = 0; k < 3; ++k)
+      if (const int a = F(f, k), b = F(f, (k + 1) % 3); near[at(a)] && near[at(b)])
+        parts.join(a, b);
+  std::vector<Island> found;
+  std::vector<int> number(near.size(), -1), seen(near.size(), 0);
+  const auto island = [&](int v) -> Island& {
+    int& i = number[at(parts.find(v))];
+    if (i < 0) {
+      i = static_cast<int>(found.size());
+      found.emplace_back();
+    }
+    return found[at(i)];
+  };
+  for (int f = 0; f < F.rows(); ++f) {
+    if (!has(near, f)) continue;
+    for (int k = 0; k < 3; ++k)
+      if (const int v = F(f, k); near[at(v)] && seen[at(v)]++ == 0) island(v).vertices.push_back(v);
+    for (int k = 0; k < 3; ++k)
+      if (const int v = F(f, k); near[at(v)]) {
+        island(v).faces.push_back(f);
+        break;
+      }
+  }
+  return found;
 }
 
 }  // namespace
 
 int unfold(const SphereProblem& problem, MatrixX3d& X) {
   constexpr int kMostRings = 8;
-  int left = turned_faces(problem.F, X);
-  MatrixX3d best = X;
-  for (int rings = 2; left > 0 && rings <= kMostRings; rings *= 2) {
-    SphereProblem near = problem;
-    hold_far_vertices(X, rings, near);
-    MatrixX3d moved = X;
-    Unfolder unfolder(near, moved);
-    if (unfolder.run() == 0) unfolder.smooth();
-    const int turned = turned_faces(problem.F, moved);
-    if (turned < left) {
-      left = turned;
-      best = moved;
-    }
+  for (int rings = 2; rings <= kMostRings && turned_faces(problem.F, X) > 0; rings *= 2) {
+    const MatrixX3d before = X;
+    const std::vector<Island> parts = islands(problem, X, rings);
+    tbb::parallel_for(size_t{0}, parts.size(), [&](size_t i) {
+      Unfolder unfolder(problem, parts[i].vertices, parts[i].faces, X);
+      const int turned = unfolder.turned(), left = unfolder.run();
+      if (left == 0)
+        unfolder.smooth();
+      else if (rings < kMostRings || left >= turned)
+        unfolder.move_back(before);
+    });
   }
-  X = best;
-  return left;
+  return turned_faces(problem.F, X);
 }
 
 void smooth_on_sphere(const SphereProblem& problem, MatrixX3d& X) {
-  Unfolder(problem, X).smooth();
+  Island all;
+  std::vector<bool> seen = problem.fixed;
+  for (int f = 0; f < problem.F.rows(); ++f) {
+    bool moves = false;
+    for (int k = 0; k < 3; ++k) {
+      const int v = problem.F(f, k);
+      moves = moves || !problem.fixed[at(v)];
+      if (seen[at(v)]) continue;
+      seen[at(v)] = true;
+      all.vertices.push_back(v);
+    }
+    if (moves) all.faces.push_back(f);
+  }
+  Unfolder(problem, std::move(all.vertices), std::move(all.faces), X).smooth();
 }
 
 }  // namespace crosspatch
