@@ -378,33 +378,46 @@ class Optimizer {
     const int faces = static_cast<int>(problem_.F.rows());
     MatrixX3d X = X_, Y = Y_;
     std::vector<double> part(at(static_cast<int>(X_.rows())), t);
-    std::vector<char> moves(part.size(), 1);
-    for (int round = 0; round < kRounds; ++round) {
-      tbb::parallel_for(0, static_cast<int>(X_.rows()), [&](int v) {
-        const int u = unknown_[at(v)];
-        if (u < 0 || moves[at(v)] == 0) return;
-        const Vector3d d = part[at(v)] * frame_[at(v)].on_surface * step_.segment<2>(u);
+    std::vector<int> moving, touched(at(faces));  // vertices that move, and the faces around them
+    for (int v = 0; v < X_.rows(); ++v)
+      if (unknown_[at(v)] >= 0) moving.push_back(v);
+    std::iota(touched.begin(), touched.end(), 0);
+    std::vector<char> worse(at(faces), 0), marked(at(faces), 0), chosen(part.size(), 0);
+    for (int round = 0; round < kRounds && !moving.empty(); ++round) {
+      tbb::parallel_for(size_t{0}, moving.size(), [&](size_t i) {
+        const int v = moving[i];
+        const Vector3d d =
+            part[at(v)] * frame_[at(v)].on_surface * step_.segment<2>(unknown_[at(v)]);
         int face = hint_[at(v)];
         X.row(v) = lift_.walk(X_.row(v).transpose(), face, d).transpose();
         Y.row(v) = lift_.point(X.row(v).transpose(), face).transpose();
       });
-      std::vector<char> worse(at(faces), 0);
-      tbb::parallel_for(0, faces, [&](int f) {
+      tbb::parallel_for(size_t{0}, touched.size(), [&](size_t i) {
+        const int f = touched[i];
         const double after = face_energy(f,
                                          {corner(X, f, 0), corner(X, f, 1), corner(X, f, 2)},
                                          {corner(Y, f, 0), corner(Y, f, 1), corner(Y, f, 2)});
         worse[at(f)] = after > kWorse * energy_[f] + kSlack * problem_.rest_area[f] ? 1 : 0;
       });
-      std::fill(moves.begin(), moves.end(), 0);
-      bool any = false;
-      for (int f = 0; f < faces; ++f)
-        if (worse[at(f)] != 0) {
-          any = true;
-          for (int k = 0; k < 3; ++k) moves[at(problem_.F(f, k))] = 1;
-        }
-      if (!any) break;
-      for (size_t v = 0; v < part.size(); ++v)
-        if (moves[v] != 0) part[v] = round < kHalvings ? part[v] / 2 : 0;
+      moving.clear();
+      for (const int f : touched)
+        if (worse[at(f)] != 0)
+          for (int k = 0; k < 3; ++k)
+            if (const int v = problem_.F(f, k); unknown_[at(v)] >= 0 && chosen[at(v)] == 0) {
+              chosen[at(v)] = 1;
+              moving.push_back(v);
+            }
+      touched.clear();
+      for (const int v : moving) {
+        part[at(v)] = round < kHalvings ? part[at(v)] / 2 : 0;
+        chosen[at(v)] = 0;
+        for (const int f : faces_of(v))
+          if (marked[at(f)] == 0) {
+            marked[at(f)] = 1;
+            touched.push_back(f);
+          }
+      }
+      for (const int f : touched) marked[at(f)] = 0;
     }
     return X;
   }

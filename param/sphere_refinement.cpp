@@ -237,10 +237,10 @@ Result<MatrixX3d> embed_in_sphere(const TriangleMesh& mesh, const ProgressiveMes
   if (Status s = place_tetrahedron(refinement, X); !s) return tl::unexpected(s.error());
   std::vector<int> hint(at(mesh.vertex_count()), 0);
   const RefineOptions options{.until_vertices = mesh.vertex_count(),
-                              .growth = 1.5,
+                              .growth = 2,
                               .optimizer = {.distortion = Distortion::kNearlyConformal,
                                             .max_iterations = 60,
-                                            .relative_decrease = 1e-4,
+                                            .relative_decrease = 5e-4,
                                             .barrier = 0.02}};
   if (Status s = refine_on_sphere(refinement, mesh.V, SphereLift(), options, X, hint); !s)
     return tl::unexpected(s.error());
