@@ -150,14 +150,19 @@ Result<Verdict> play_finals(const Shape& source,
     maps[i] = std::move(map);
     judge_by(i, maps[i]->optimize_roughly());
   });
-  std::vector<size_t> last(count);
-  std::iota(last.begin(), last.end(), size_t{0});
+  std::vector<size_t> order(count), last;
+  std::iota(order.begin(), order.end(), size_t{0});
   std::stable_sort(
-      last.begin(), last.end(), [&](size_t i, size_t j) { return energy[i] < energy[j]; });
+      order.begin(), order.end(), [&](size_t i, size_t j) { return energy[i] < energy[j]; });
   constexpr size_t kToTheEnd = 5;
-  last.resize(std::min(count, kToTheEnd));
+  for (const size_t i : order) {
+    const auto same = [&](size_t j) { return maps[j]->coarse_distance(*maps[i]) <= kSameMap; };
+    if (maps[i] != nullptr && last.size() < kToTheEnd &&
+        std::none_of(last.begin(), last.end(), same))
+      last.push_back(i);
+  }
   tbb::parallel_for(size_t{0}, last.size(), [&](size_t k) {
-    if (maps[last[k]] != nullptr) judge_by(last[k], maps[last[k]]->optimize_coarse());
+    judge_by(last[k], maps[last[k]]->optimize_coarse());
   });
   for (Candidate& c : judgement.ranking) c.energy = kInfinity;
   for (size_t i = 0; i < count; ++i) {

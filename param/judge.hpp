@@ -68,7 +68,7 @@ struct Verdict {
 /// Optimises the coarse maps of the finalists and ranks them by what is left of the energy: the
 /// unoptimised map tells what is wrong by far, the optimised one what is better. A body whose two
 /// sides are alike has a mirrored map that costs as little; the chirality fields tell them apart.
-/// All are optimised roughly first, and only the best of them to the end.
+/// All are optimised roughly first, and only the best that differ from each other to the end.
 /// kNoCorrespondence if none can be optimised. Shapes must outlive the verdict.
 Result<Verdict> play_finals(const Shape& source,
                             const Shape& target,
