@@ -8,6 +8,7 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -35,7 +36,7 @@ using Polygon = std::vector<Vector3d>;  // barycentric in the moving face
 struct Scratch {
   std::vector<int> seen;  ///< per face of the other mesh: number of the last visit
   int visit = 0;
-  std::vector<int> waiting;
+  std::vector<int> waiting, met;  ///< faces of the other mesh: to be looked at, and under cells
   Polygon polygon, clipped;
   std::vector<Vector2d> on_mesh, on_other;
   std::vector<std::pair<int, int>> ring;
@@ -43,9 +44,13 @@ struct Scratch {
 
 class CellRelaxation {
  public:
+  /// When a vertex last moved, in sweeps over one colour, per vertex of either mesh.
+  using Times = std::vector<int>;
+
   CellRelaxation(const TriangleMesh& mesh,
                  const TriangleMesh& other,
                  const MatrixX3d& Y,
+                 const std::vector<int>& pinned,
                  MatrixX3d& X)
       : mesh_(mesh),
         other_(other),
@@ -54,27 +59,39 @@ class CellRelaxation {
         lift_(other, Y),
         flat_(flatten(mesh)),
         other_flat_(flatten(other)),
+        hint_(idx(mesh.vertex_count()), 0),
+        tried_(idx(mesh.vertex_count()), -1),
         scratch_([&] {
           Scratch s;
           s.seen.assign(idx(other.face_count()), 0);
           return s;
         }) {
-    hint_.assign(idx(mesh.vertex_count()), 0);
+    std::vector<bool> is_free(idx(mesh.vertex_count()), true);
+    for (const int v : pinned) is_free[idx(v)] = false;
+    colours_ = vertex_colours(mesh.F, is_free);
     int face = 0;
     for (int v = 0; v < mesh.vertex_count(); ++v)
       hint_[idx(v)] = face = lift_.locate(X.row(v).transpose(), face);
   }
 
-  /// Tries every vertex once; returns by how much their energies fall.
-  double run(const std::vector<std::vector<int>>& colours) {
+  /// Tries every vertex near which something has moved since its last try. Returns by how much
+  /// their energies fall.
+  double run(int& now, Times& moved, const Times& others_moved) {
+    for (int v = 0; v < mesh_.vertex_count(); ++v)
+      hint_[idx(v)] = lift_.locate(X_.row(v).transpose(), hint_[idx(v)]);
     constexpr std::size_t kGrain = 8;
     double gained = 0;
-    for (const std::vector<int>& colour : colours) {
+    for (const std::vector<int>& colour : colours_) {
+      ++now;
       std::vector<double> gain(colour.size());
       tbb::parallel_for(tbb::blocked_range<std::size_t>(0, colour.size(), kGrain),
                         [&](const tbb::blocked_range<std::size_t>& range) {
-                          for (std::size_t i = range.begin(); i < range.end(); ++i)
-                            gain[i] = move(colour[i], scratch_.local());
+                          for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                            const int v = colour[i];
+                            gain[i] = move(v, moved, others_moved, scratch_.local());
+                            tried_[idx(v)] = now;
+                            if (gain[i] > 0) moved[idx(v)] = now;
+                          }
                         });
       gained = std::accumulate(gain.begin(), gain.end(), gained);
     }
@@ -96,31 +113,93 @@ class CellRelaxation {
     return flat;
   }
 
-  double move(int v, Scratch& scratch) {
-    constexpr double kBound = 6;
+  double move(int v, const Times& moved, const Times& others_moved, Scratch& scratch) {
+    constexpr double kBound = 5;
     const Vector3d center = X_.row(v).transpose();
-    const Energy now = around(v, center, hint_[idx(v)], scratch);
+    scratch.met.clear();
+    const Energy now = around(v, center, hint_[idx(v)], kInfinity, scratch);
     if (!(now.sum > kBound * now.weight) || !(now.sum < kInfinity)) return 0;
+    const int last = tried_[idx(v)];
+    bool changed = moved[idx(v)] >= last;
+    for_each_outgoing(
+        mesh_, v, [&](int h) { changed = changed || moved[idx(mesh_.to(h))] > last; });
+    for (std::size_t i = 0; i < scratch.met.size() && !changed; ++i)
+      for (int k = 0; k < 3; ++k)
+        changed = changed || others_moved[idx(other_.F(scratch.met[i], k))] > last;
+    if (!changed) return 0;
     scratch.ring.clear();
     for_each_outgoing(
         mesh_, v, [&](int h) { scratch.ring.emplace_back(mesh_.to(h), mesh_.to(next(h))); });
     const RingKernel kernel(X_, scratch.ring, center);
     if (kernel.corners().empty()) return 0;
+    constexpr double kWorthwhile = 1e-3;
     double best = now.sum;
     Vector2d place = Vector2d::Zero();
     const auto consider = [&](const Vector2d& p) {
       const Vector3d x = kernel.on_sphere(p);
       const int face = lift_.locate(x, hint_[idx(v)]);
-      const double sum = around(v, x, face, scratch).sum;
-      if (!(sum < best)) return false;
+      const double bound = best - kWorthwhile * now.sum;
+      const double sum = around(v, x, face, bound, scratch).sum;
+      if (!(sum < bound)) return false;
       best = sum;
       place = p;
       X_.row(v) = x.transpose();
       hint_[idx(v)] = face;
       return true;
     };
+    constexpr double kCrumpled = 20;
+    if (now.sum > kCrumpled * now.weight)
+      search(kernel, place, consider);
+    else
+      newton_step(v, kernel, now.sum, consider, scratch);
+    return now.sum - best;
+  }
+
+  /// A step to the minimum of the quadratic through the energies at five places around v. False
+  /// where it gains nothing.
+  template <class Consider>
+  bool newton_step(
+      int v, const RingKernel& kernel, double energy, const Consider& consider, Scratch& scratch) {
+    // Into the kernel all around: a part of the way to its nearest side.
+    double room = kInfinity;
+    const std::vector<Vector2d>& corners = kernel.corners();
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const Vector2d p = corners[i], side = corners[(i + 1) % corners.size()] - p;
+      room = std::min(room, std::abs(side[0] * p[1] - side[1] * p[0]) / side.norm());
+    }
+    constexpr double kStencil = 0.1;
+    const double h = kStencil * room;
+    const auto at_place = [&](double x, double y) {
+      const Vector3d place = kernel.on_sphere(h * Vector2d(x, y));
+      return around(v, place, lift_.locate(place, hint_[idx(v)]), kInfinity, scratch).sum;
+    };
+    const double e = at_place(1, 0), w = at_place(-1, 0), n = at_place(0, 1), s = at_place(0, -1),
+                 ne = at_place(1, 1);
+    const Vector2d g((e - w) / 2, (n - s) / 2);
+    const double mixed = ne - e - n + energy;
+    Eigen::Matrix2d H;
+    H << e - 2 * energy + w, mixed, mixed, n - 2 * energy + s;
+    if (!g.allFinite() || !H.allFinite()) return false;
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen;
+    eigen.computeDirect(H);
+    const double least = 0.1 * eigen.eigenvalues().cwiseAbs().maxCoeff();
+    const Vector2d curvature = eigen.eigenvalues().cwiseAbs().cwiseMax(least);
+    const Vector2d step =
+        -h * (eigen.eigenvectors() *
+              ((eigen.eigenvectors().transpose() * g).array() / curvature.array()).matrix());
+    if (!step.allFinite()) return false;
+    constexpr int kHalvings = 3;
+    double t = 1;
+    for (int i = 0; i < kHalvings; ++i, t /= 2)
+      if (consider(t * step)) return true;
+    return false;
+  }
+
+  /// Towards the kernel's centroid and its corners, by shorter steps when no step of a length gains
+  /// any more.
+  template <class Consider>
+  static void search(const RingKernel& kernel, const Vector2d& place, const Consider& consider) {
     consider(kernel.centroid());
-    // Towards the kernel's corners, by shorter steps when no step of a length gains any more.
     constexpr double kLongest = 0.6, kShortest = 0.05;
     constexpr int kMostSteps = 12;
     int steps = 0;
@@ -134,20 +213,26 @@ class CellRelaxation {
       else
         s /= 2;
     }
-    return now.sum - best;
   }
 
   /// Energy of the faces around v, with v at x in `face` of the other mesh; infinite where one is
-  /// turned over.
-  [[nodiscard]] Energy around(int v, const Vector3d& x, int face, Scratch& scratch) const {
+  /// turned over. Not summed to the end once it reaches `bound`.
+  [[nodiscard]] Energy around(
+      int v, const Vector3d& x, int face, double bound, Scratch& scratch) const {
     Energy energy;
     for_each_outgoing(mesh_, v, [&](int h) {
-      if (energy.sum < kInfinity) add_face(h / 3, v, x, face, scratch, energy);
+      if (energy.sum < bound) add_face(h / 3, v, x, face, bound, scratch, energy);
     });
     return energy;
   }
 
-  void add_face(int f, int v, const Vector3d& x, int face, Scratch& scratch, Energy& energy) const {
+  void add_face(int f,
+                int v,
+                const Vector3d& x,
+                int face,
+                double bound,
+                Scratch& scratch,
+                Energy& energy) const {
     Eigen::Matrix3d corners;
     scratch.waiting.clear();
     ++scratch.visit;
@@ -177,7 +262,9 @@ class CellRelaxation {
       const double share = clip(values, scratch);
       if (!(share > 0)) continue;
       covered += share;
+      scratch.met.push_back(g);
       add_cell(f, g, values, scratch, energy);
+      if (!(energy.sum < bound)) return;
       for (int m = 0; m < 3; ++m)
         if (values.row(m).minCoeff() < 0) {
           const int twin = other_.twin[idx(3 * g + (m + 1) % 3)];
@@ -242,7 +329,9 @@ class CellRelaxation {
   MatrixX3d& X_;
   MeshLift lift_;
   std::vector<Corners> flat_, other_flat_;
-  std::vector<int> hint_;  ///< per vertex: face of the other mesh that holds it
+  std::vector<int> hint_;   ///< per vertex: face of the other mesh that holds it
+  std::vector<int> tried_;  ///< per vertex: when it was last tried
+  std::vector<std::vector<int>> colours_;
   tbb::enumerable_thread_specific<Scratch> scratch_;
 };
 
@@ -253,9 +342,24 @@ double relax_cells(const TriangleMesh& mesh,
                    const MatrixX3d& Y,
                    const std::vector<int>& pinned,
                    MatrixX3d& X) {
-  std::vector<bool> is_free(idx(mesh.vertex_count()), true);
-  for (const int v : pinned) is_free[idx(v)] = false;
-  return CellRelaxation(mesh, other, Y, X).run(vertex_colours(mesh.F, is_free));
+  CellRelaxation::Times moved(idx(mesh.vertex_count()), 0);
+  int now = 0;
+  return CellRelaxation(mesh, other, Y, pinned, X)
+      .run(now, moved, CellRelaxation::Times(idx(other.vertex_count()), 0));
+}
+
+double relax_cells(const MovingMesh& a, const MovingMesh& b, int rounds, double worthwhile) {
+  CellRelaxation of_a(a.mesh, b.mesh, b.X, a.pinned, a.X), of_b(b.mesh, a.mesh, a.X, b.pinned, b.X);
+  CellRelaxation::Times a_moved(idx(a.mesh.vertex_count()), 0),
+      b_moved(idx(b.mesh.vertex_count()), 0);
+  double sum = 0, gain = worthwhile;
+  int now = 0;
+  for (int i = 0; i < rounds && gain >= worthwhile; ++i) {
+    gain = of_a.run(now, a_moved, b_moved);
+    gain += of_b.run(now, b_moved, a_moved);
+    sum += gain;
+  }
+  return sum;
 }
 
 }  // namespace crosspatch

@@ -10,7 +10,7 @@ namespace crosspatch {
 /// where the cells of the common subdivision with `other` have less energy: the symmetric Dirichlet
 /// energy |J|^2 + |J^-1|^2, weighted by the mean of a cell's areas on both surfaces, as measure_map
 /// has it. It sees what happens inside faces, where energies that are judged at lifted corners are
-/// blind. Only vertices around which the mean energy is above 6 (isometry: 4) are tried. No face is
+/// blind. Only vertices around which the mean energy is above 5 (isometry: 4) are tried. No face is
 /// turned over, and no energy rises. `X` and `Y` (#V x 3, unit rows) embed the meshes, closed
 /// surfaces of area 1; `pinned` vertices stay. Returns by how much the mean energy falls; the same
 /// for any number of threads.
@@ -19,5 +19,15 @@ double relax_cells(const TriangleMesh& mesh,
                    const MatrixX3d& Y,
                    const std::vector<int>& pinned,
                    MatrixX3d& X);
+
+/// The same for the vertices of either mesh in turn, until a round gains less than
+/// `worthwhile` or `rounds` have passed. A vertex is tried again only where something near it has
+/// moved since. Returns the sum of what was gained.
+struct MovingMesh {
+  const TriangleMesh& mesh;
+  const std::vector<int>& pinned;
+  MatrixX3d& X;
+};
+double relax_cells(const MovingMesh& a, const MovingMesh& b, int rounds, double worthwhile);
 
 }  // namespace crosspatch

@@ -226,12 +226,12 @@ void SphereMap::settle() {
     const Vector3d x0 = Y_.row(b.F(f, 0)), x1 = Y_.row(b.F(f, 1)), x2 = Y_.row(b.F(f, 2));
     problem.reference_orientation[f] = x0.dot((x1 - x0).cross(x2 - x0));
   }
-  optimize_on_sphere(
-      problem,
-      to_source,
-      {.max_iterations = options_.fine_iterations, .relative_decrease = 1e-3, .barrier = kBarrier},
-      Y_,
-      hint);
+  constexpr int kFew = 12;  // the cells below see more than many steps against the source's kinks
+  optimize_on_sphere(problem,
+                     to_source,
+                     {.max_iterations = kFew, .relative_decrease = 1e-3, .barrier = kBarrier},
+                     Y_,
+                     hint);
   relax_worst(level_, source_.mesh.V, lift_, pinned_, X_, hint_);
   // Where there is an isometry it is found by now, but for the pull of the barrier and of
   // curvatures that differ between two triangulations of one surface.
@@ -241,11 +241,8 @@ void SphereMap::settle() {
             0);
   // What is left is inside faces, where neither side's vertices see it.
   constexpr int kRounds = 8;
-  constexpr double kWorthwhile = 2e-3;
-  double gain = 1;
-  for (int i = 0; i < kRounds && gain > kWorthwhile; ++i)
-    gain = relax_cells(source_.mesh, b, Y_, pinned_, X_) +
-           relax_cells(b, source_.mesh, X_, pinned, Y_);
+  constexpr double kWorthwhile = 5e-3;
+  relax_cells({source_.mesh, pinned_, X_}, {b, pinned, Y_}, kRounds, kWorthwhile);
 }
 
 void SphereMap::join_close_vertices() {
