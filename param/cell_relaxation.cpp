@@ -155,10 +155,9 @@ class CellRelaxation {
     return now.sum - best;
   }
 
-  /// A step to the minimum of the quadratic through the energies at five places around v. False
-  /// where it gains nothing.
+  /// A step to the minimum of the quadratic through the energies at v and five places around it.
   template <class Consider>
-  bool newton_step(
+  void newton_step(
       int v, const RingKernel& kernel, double energy, const Consider& consider, Scratch& scratch) {
     // Into the kernel all around: a part of the way to its nearest side.
     double room = kInfinity;
@@ -179,7 +178,7 @@ class CellRelaxation {
     const double mixed = ne - e - n + energy;
     Eigen::Matrix2d H;
     H << e - 2 * energy + w, mixed, mixed, n - 2 * energy + s;
-    if (!g.allFinite() || !H.allFinite()) return false;
+    if (!g.allFinite() || !H.allFinite()) return;
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen;
     eigen.computeDirect(H);
     const double least = 0.1 * eigen.eigenvalues().cwiseAbs().maxCoeff();
@@ -187,12 +186,10 @@ class CellRelaxation {
     const Vector2d step =
         -h * (eigen.eigenvectors() *
               ((eigen.eigenvectors().transpose() * g).array() / curvature.array()).matrix());
-    if (!step.allFinite()) return false;
+    if (!step.allFinite()) return;
     constexpr int kHalvings = 3;
     double t = 1;
-    for (int i = 0; i < kHalvings; ++i, t /= 2)
-      if (consider(t * step)) return true;
-    return false;
+    for (int i = 0; i < kHalvings && !consider(t * step); ++i) t /= 2;
   }
 
   /// Towards the kernel's centroid and its corners, by shorter steps when no step of a length gains
