@@ -98,6 +98,9 @@ void add_pair(CLI::App& command, PairArguments& pair) {
                   "Corresponding vertices 'source_vertex target_vertex' a line, counted from 0; "
                   "they are met exactly [found by the program]")
       ->type_name("FILE");
+  command.add_flag("--force",
+                   pair.files.force,
+                   "Go on with the best map even if it is distorted beyond trust [exit code 4]");
   command
       .add_option("--report",
                   pair.report,

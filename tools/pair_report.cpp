@@ -45,6 +45,8 @@ std::vector<std::string> gate_failures(const PairRun& run) {
         fmt::format("the map covers {:.2f} % of the source and {:.2f} % of the target",
                     100 * quality.source_coverage,
                     100 * quality.target_coverage));
+  if (const std::string crumpled = crumpled_sentence(run.matched); !crumpled.empty())
+    warnings.push_back(crumpled);
   if (run.from_points)
     if (const std::string torn = torn_warning(*run.from_points); !torn.empty())
       warnings.push_back(torn);

@@ -52,11 +52,17 @@ Result<std::vector<Landmark>> read_landmarks(const std::string& path,
       .map_error([&](const Error& error) { return with_path(path, error); });
 }
 
-Result<MatchedMap> find_map(const PairRun& run, int alternatives, Progress& progress) {
+Result<MatchedMap> find_map(const PairRun& run, const PairFiles& files, Progress& progress) {
   MatchOptions options;
-  options.alternatives = alternatives;
+  options.alternatives = files.alternatives;
   options.progress = [&progress](const std::string& stage) { progress.begin(stage); };
-  return match_and_map(run.source.prepared.mesh, run.target.prepared.mesh, run.landmarks, options);
+  return match_and_map(run.source.prepared.mesh, run.target.prepared.mesh, run.landmarks, options)
+      .and_then([&](MatchedMap matched) -> Result<MatchedMap> {
+        if (const std::string crumpled = crumpled_sentence(matched);
+            !crumpled.empty() && !files.force)
+          return fail(ErrorCode::kNoCorrespondence, crumpled + "; --force goes on with it");
+        return matched;
+      });
 }
 
 /// Says whether a map that was given is a bijection of the surfaces, else of parts that end at
@@ -143,6 +149,16 @@ Result<MorseSmaleComplex> detailed_complex(const TriangleMesh& mesh) {
 
 }  // namespace
 
+std::string crumpled_sentence(const MatchedMap& matched) {
+  const double energy = matched.result.quality.percentile_99;
+  if (matched.ranking.empty() || !(energy > kMostEnergy)) return "";
+  return fmt::format(
+      "no trustworthy map: 1 % of the area is distorted beyond an energy of {:.3g}, {:.0f} is the "
+      "most",
+      energy,
+      kMostEnergy);
+}
+
 Result<std::vector<Landmark>> mesh_landmarks(const std::vector<FileLandmark>& landmarks,
                                              const PreparedMesh& source,
                                              const PreparedMesh& target) {
@@ -192,8 +208,8 @@ Result<PairRun> read_pair(const PairFiles& files, Progress& progress) {
 }
 
 Status map_pair(const PairFiles& files, PairRun& run, Progress& progress) {
-  Result<MatchedMap> matched = files.map.empty() ? find_map(run, files.alternatives, progress)
-                                                 : read_map(files, run, progress);
+  Result<MatchedMap> matched =
+      files.map.empty() ? find_map(run, files, progress) : read_map(files, run, progress);
   if (!matched) return tl::unexpected(matched.error());
   run.matched = std::move(*matched);
   if (files.texture == "distortion")

@@ -51,6 +51,14 @@ Result<Matching> judged_matching(const PairRun& run, Progress& progress);
 /// below 16 % in the others.
 constexpr double kSafeMargin = 0.1;
 
+/// Energy (|J|^2 + |J^-1|^2; isometry: 4) that 99 % of a map that was found may reach: beyond it, a
+/// stretch of thirty, surfaces were forced on each other that do not correspond. The right maps of
+/// all sets that were tried stay below 360.
+constexpr double kMostEnergy = 1000;
+
+/// Says by how much a found map exceeds kMostEnergy; empty where it does not, and for given maps.
+std::string crumpled_sentence(const MatchedMap& matched);
+
 /// The landmarks as vertices of the prepared meshes. Pairs that repeat another after welding are
 /// dropped. kBadInput with the file's vertex: it belongs to a part that was left out, or welding
 /// gives it two partners.
