@@ -1,6 +1,4 @@
 // Drives the built program: features and maps of two surfaces.
-#include "pair_of_surfaces.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "pair_of_surfaces.hpp"
 #include "shapes.hpp"
 #include "tools/map_text.hpp"
 #include "tools/text_lines.hpp"

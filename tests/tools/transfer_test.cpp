@@ -1,6 +1,4 @@
 // Drives the built program: textures and what else is carried from one surface to another.
-#include "pair_of_surfaces.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "pair_of_surfaces.hpp"
 #include "tools/text_lines.hpp"
 #include "transfer/rig.hpp"
 
