@@ -20,14 +20,16 @@ double relax_cells(const TriangleMesh& mesh,
                    const std::vector<int>& pinned,
                    MatrixX3d& X);
 
-/// The same for the vertices of either mesh in turn, until a round gains less than
-/// `worthwhile` or `rounds` have passed. A vertex is tried again only where something near it has
-/// moved since. Returns the sum of what was gained.
+/// A mesh that moves on the sphere: its unit rows (#V x 3), and the vertices that stay.
 struct MovingMesh {
   const TriangleMesh& mesh;
   const std::vector<int>& pinned;
   MatrixX3d& X;
 };
+
+/// The same for the vertices of either mesh in turn, until a round gains less than
+/// `worthwhile` or `rounds` have passed. A vertex is tried again only where something near it has
+/// moved since. Returns the sum of what was gained.
 double relax_cells(const MovingMesh& a, const MovingMesh& b, int rounds, double worthwhile);
 
 }  // namespace crosspatch

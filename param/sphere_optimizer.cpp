@@ -313,12 +313,6 @@ class Optimizer {
     systems_.resize(at(static_cast<int>(problem_.F.rows())));
   }
 
-  double& entry(int row, int column) {
-    const int* begin = H_.innerIndexPtr() + H_.outerIndexPtr()[column];
-    const int* end = H_.innerIndexPtr() + H_.outerIndexPtr()[column + 1];
-    return H_.valuePtr()[std::lower_bound(begin, end, row) - H_.innerIndexPtr()];
-  }
-
   void assemble() {
     tbb::parallel_for(0, static_cast<int>(X_.rows()), [&](int v) {
       if (!active_[at(v)]) return;
@@ -344,7 +338,7 @@ class Optimizer {
           if (j < 0 || i < j) continue;
           for (int p = 0; p < 2; ++p)
             for (int q = 0; q < 2; ++q)
-              if (i + p >= j + q) entry(i + p, j + q) += s.H(2 * a + p, 2 * b + q);
+              if (i + p >= j + q) H_.coeffRef(i + p, j + q) += s.H(2 * a + p, 2 * b + q);
         }
       }
     }
@@ -360,13 +354,13 @@ class Optimizer {
       add_fields(v, H, g);
       gradient_.segment<2>(i) += g;
       for (int p = 0; p < 2; ++p)
-        for (int q = 0; q <= p; ++q) entry(i + p, i + q) += H(p, q);
+        for (int q = 0; q <= p; ++q) H_.coeffRef(i + p, i + q) += H(p, q);
     }
   }
 
   bool solve() {
     // Rotations of the sphere and slides of symmetric surfaces leave some energies unchanged.
-    for (int i = 0; i < H_.cols(); ++i) entry(i, i) += damping_;
+    for (int i = 0; i < H_.cols(); ++i) H_.coeffRef(i, i) += damping_;
     return solver_.solve(H_, -gradient_, step_);
   }
 

@@ -167,12 +167,6 @@ class Unfolder {
     solver_.analyzePattern(H_);
   }
 
-  double& entry(int row, int column) {
-    const int* begin = H_.innerIndexPtr() + H_.outerIndexPtr()[column];
-    const int* end = H_.innerIndexPtr() + H_.outerIndexPtr()[column + 1];
-    return H_.valuePtr()[std::lower_bound(begin, end, row) - H_.innerIndexPtr()];
-  }
-
   /// One Gauss-Newton step with backtracking; the new energy, or `before` if no step is lower.
   double step(double before) {
     struct FaceSystem {
@@ -199,10 +193,10 @@ class Unfolder {
         trace += systems[f].H(a, a);
         for (int b = 0; b < 6; ++b)
           if (const int j = unknowns_[f][at(b)]; j >= 0 && i >= j)
-            entry(i, j) += systems[f].H(a, b);
+            H_.coeffRef(i, j) += systems[f].H(a, b);
       }
     const double damping = 1e-9 * trace / static_cast<double>(H_.rows());
-    for (int i = 0; i < H_.rows(); ++i) entry(i, i) += damping;
+    for (int i = 0; i < H_.rows(); ++i) H_.coeffRef(i, i) += damping;
     solver_.factorize(H_);
     if (solver_.info() != Eigen::Success) return before;
     const Eigen::VectorXd direction = solver_.solve(-gradient);

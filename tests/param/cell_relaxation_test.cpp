@@ -51,6 +51,16 @@ TEST(CellRelaxation, GainsWhatTheCommonSubdivisionLoses) {
               0);
 }
 
+TEST(CellRelaxation, BothMeshesInTurnGainMoreThanOne) {
+  Spheres s, alone;
+  const double of_one = relax_cells(alone.mesh, alone.other, alone.Y, {}, alone.X);
+  const double before = s.energy();
+  const std::vector<int> none;
+  const double gain = relax_cells({s.mesh, none, s.X}, {s.other, none, s.Y}, 3, 0);
+  EXPECT_GT(gain, of_one);
+  EXPECT_NEAR(s.energy(), before - gain, 1e-5);
+}
+
 TEST(CellRelaxation, AnIsometryStaysAndSoDoPinnedVertices) {
   Spheres s;
   MatrixX3d same = s.Y;
