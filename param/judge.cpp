@@ -50,15 +50,14 @@ struct Trial {
   double distortion = kInfinity;
 };
 
-/// The trials of the candidates before `last`, evaluated.
+/// The trials of the candidates, evaluated.
 std::vector<Trial> run_trials(const ChainPlanner& planner,
                               const std::vector<Candidate>& candidates,
-                              size_t last,
                               int chains,
                               DiscCache& source,
                               DiscCache& target) {
   std::vector<Trial> trials;
-  for (size_t c = 0; c < last; ++c)
+  for (size_t c = 0; c < candidates.size(); ++c)
     for (auto& [a, b] : planner.chains(candidates[c].landmarks, chains)) {
       source.want(a);
       target.want(b);
@@ -74,7 +73,57 @@ std::vector<Trial> run_trials(const ChainPlanner& planner,
   return trials;
 }
 
+/// Initial maps of a mirrored candidate that go to the finals: as many as leaders mostly have.
+constexpr size_t kMirroredChains = 2;
+
+/// Moves the mirrored candidates of the first `leaders` in the order to the end of the first
+/// `finalists`, where they are not among them. Returns how many. Of several that exchange as many
+/// pairs it is the first that was given: the best proposal exchanges what is alike.
+size_t append_mirrored(const std::vector<Candidate>& candidates,
+                       std::vector<size_t>& order,
+                       size_t finalists,
+                       int leaders) {
+  size_t end = finalists;
+  for (size_t leader = 0; leader < std::min(finalists, static_cast<size_t>(leaders)); ++leader) {
+    int most = 0;
+    size_t mirrored = 0;
+    for (size_t c = 0; c < candidates.size(); ++c)
+      if (const int n = exchanged_pairs(candidates[order[leader]], candidates[c]); n > most) {
+        most = n;
+        mirrored = c;
+      }
+    const auto place = std::find(order.begin(), order.end(), mirrored);
+    const auto next = order.begin() + static_cast<std::ptrdiff_t>(end);
+    if (most == 0 || place < next) continue;
+    std::rotate(next, place, place + 1);
+    ++end;
+  }
+  return end - finalists;
+}
+
 }  // namespace
+
+int exchanged_pairs(const Candidate& a, const Candidate& b) {
+  if (a.landmarks.size() != b.landmarks.size()) return 0;
+  std::map<int, int> target_of, source_of, other_target_of;
+  for (const Landmark& l : a.landmarks) {
+    target_of[l.source_vertex] = l.target_vertex;
+    source_of[l.target_vertex] = l.source_vertex;
+  }
+  for (const Landmark& l : b.landmarks) other_target_of[l.source_vertex] = l.target_vertex;
+  int moved = 0;
+  for (const auto& [source, target] : target_of) {
+    const auto other = other_target_of.find(source);
+    if (other == other_target_of.end()) return 0;
+    if (other->second == target) continue;
+    const auto partner = source_of.find(other->second);
+    if (partner == source_of.end()) return 0;
+    const auto back = other_target_of.find(partner->second);
+    if (back == other_target_of.end() || back->second != target) return 0;
+    ++moved;
+  }
+  return moved / 2;
+}
 
 Result<Judgement> judge(const Shape& source,
                         const Shape& target,
@@ -88,37 +137,45 @@ Result<Judgement> judge(const Shape& source,
   const auto distortion = [&](size_t c) {
     return trials[c].empty() ? kInfinity : trials[c][0].distortion;
   };
-  // Tries the first `last` candidates in the order and sorts them.
-  const auto evaluate = [&](size_t last, int chains) {
+  // Tries the candidates from place `first` to before `last` of the order and sorts them.
+  const auto evaluate = [&](size_t first, size_t last, int chains) {
     std::vector<Candidate> tried;
-    for (size_t i = 0; i < last; ++i) tried.push_back(candidates[order[i]]);
-    for (size_t i = 0; i < last; ++i) trials[order[i]].clear();
-    for (Trial& t : run_trials(planner, tried, last, chains, source_discs, target_discs))
-      if (t.distortion < kInfinity) trials[order[t.candidate]].push_back(std::move(t));
-    for (size_t i = 0; i < last; ++i)
+    for (size_t i = first; i < last; ++i) tried.push_back(candidates[order[i]]);
+    for (size_t i = first; i < last; ++i) trials[order[i]].clear();
+    for (Trial& t : run_trials(planner, tried, chains, source_discs, target_discs))
+      if (t.distortion < kInfinity) trials[order[first + t.candidate]].push_back(std::move(t));
+    for (size_t i = first; i < last; ++i)
       std::stable_sort(trials[order[i]].begin(),
                        trials[order[i]].end(),
                        [](const Trial& x, const Trial& y) { return x.distortion < y.distortion; });
-    std::stable_sort(order.begin(),
+    std::stable_sort(order.begin() + static_cast<std::ptrdiff_t>(first),
                      order.begin() + static_cast<std::ptrdiff_t>(last),
                      [&](size_t x, size_t y) { return distortion(x) < distortion(y); });
   };
-  evaluate(candidates.size(), options.chains);
+  evaluate(0, candidates.size(), options.chains);
   const size_t finalists = std::min(candidates.size(), static_cast<size_t>(options.finalists));
-  evaluate(finalists, options.final_chains);
+  evaluate(0, finalists, options.final_chains);
+  const size_t mirrored = append_mirrored(candidates, order, finalists, options.leaders);
+  evaluate(finalists, finalists + mirrored, options.final_chains);
   Judgement judgement;
   for (const size_t c : order) {
     candidates[c].distortion = distortion(c);
     judgement.ranking.push_back(candidates[c]);
   }
-  for (size_t chain = 0; chain < static_cast<size_t>(options.final_chains); ++chain)
+  const auto enter = [&](size_t i, size_t chain) {
+    const auto& tried = trials[order[i]];
+    if (chain < tried.size())
+      judgement.finals.push_back({i,
+                                  {*source_discs.find(tried[chain].source_chain),
+                                   *target_discs.find(tried[chain].target_chain),
+                                   tried[chain].distortion}});
+  };
+  const size_t chains = static_cast<size_t>(options.final_chains);
+  for (size_t chain = 0; chain < chains; ++chain)
     for (size_t i = 0; i < finalists; ++i)
-      if (const auto& tried = trials[order[i]];
-          chain < tried.size() && judgement.finals.size() < static_cast<size_t>(options.finals))
-        judgement.finals.push_back({i,
-                                    {*source_discs.find(tried[chain].source_chain),
-                                     *target_discs.find(tried[chain].target_chain),
-                                     tried[chain].distortion}});
+      if (judgement.finals.size() < static_cast<size_t>(options.finals)) enter(i, chain);
+  for (size_t i = finalists; i < finalists + mirrored; ++i)
+    for (size_t chain = 0; chain < std::min(chains, kMirroredChains); ++chain) enter(i, chain);
   if (judgement.finals.empty())
     return fail(ErrorCode::kNoCorrespondence, "judge: no candidate has a bijective map");
   return judgement;
@@ -172,14 +229,21 @@ Result<Verdict> play_finals(const Shape& source,
   const size_t best =
       static_cast<size_t>(std::min_element(energy.begin(), energy.end()) - energy.begin());
   if (maps[best] == nullptr) return tl::unexpected(started[0].error());
-  double margin = kInfinity;
+  const auto candidate = [&](size_t i) -> const Candidate& {
+    return judgement.ranking[judgement.finals[i].candidate];
+  };
+  double margin = kInfinity, mirrored_margin = kInfinity;
   for (size_t i = 0; i < count; ++i)
-    if (maps[i] != nullptr && maps[best]->coarse_distance(*maps[i]) > kSameMap)
+    if (maps[i] != nullptr && maps[best]->coarse_distance(*maps[i]) > kSameMap) {
       margin = std::min(margin, energy[i] - energy[best]);
+      if (exchanged_pairs(candidate(best), candidate(i)) > 0)
+        mirrored_margin = std::min(mirrored_margin, energy[i] - energy[best]);
+    }
   std::stable_sort(
       last.begin(), last.end(), [&](size_t i, size_t j) { return energy[i] < energy[j]; });
   Verdict verdict;
   verdict.margin = margin;
+  verdict.mirrored_margin = mirrored_margin;
   for (const size_t i : last)
     if (maps[i] != nullptr)
       verdict.maps.push_back({std::move(maps[i]),

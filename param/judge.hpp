@@ -17,6 +17,10 @@ struct Candidate {
   double energy = 0;
 };
 
+/// How many pairs of landmarks `b` exchanges against `a`, as the other side of a body does with its
+/// limbs; 0 where the two are about different vertices or differ by anything else.
+int exchanged_pairs(const Candidate& a, const Candidate& b);
+
 struct JudgeOptions {
   int chains = 2;  ///< tried for every candidate; Source: one to five change the winner in a few
                    ///< percent of pairs
@@ -25,6 +29,10 @@ struct JudgeOptions {
   /// Initial maps that go to the finals: the best of every finalist and, while there is room, maps
   /// along their other chains, which may belong to other homotopy classes.
   int finals = 14;
+  /// The mirrored candidates (those that exchange most pairs) of so many that lead are finalists
+  /// too, and their maps go to the finals besides the others: which side is the right one is hard
+  /// to tell before the maps are optimised.
+  int leaders = 3;
 };
 
 struct Final {
@@ -39,7 +47,7 @@ struct Judgement {
 
 /// Builds the unoptimised bijective map of every candidate on the coarse levels and ranks them by
 /// its distortion, the mean over both directions of the mean logarithm of the symmetric Dirichlet
-/// energy. Maps keep orientation, so mirrored and swapped assignments pay with twists.
+/// energy. `candidates` are given in the order of their plausibility. Maps keep orientation, so mirrored and swapped assignments pay with twists.
 /// kNoCorrespondence if no candidate has a map.
 Result<Judgement> judge(const Shape& source,
                         const Shape& target,
@@ -63,6 +71,9 @@ struct Verdict {
   /// Energy of the best final whose map is another one (farther than kSameMap) minus the winner's;
   /// infinite if there is none.
   double margin = 0;
+  /// The same over the finals of candidates that exchange pairs of the winner's landmarks and
+  /// change nothing else.
+  double mirrored_margin = 0;
 };
 
 /// Optimises the coarse maps of the finalists and ranks them by what is left of the energy: the

@@ -123,6 +123,7 @@ Result<MatchedMap> match_closed(const TriangleMesh& source,
   MatchedMap matched;
   matched.ranking = std::move(verdict->ranking);
   matched.margin = verdict->margin;
+  matched.mirrored_margin = verdict->mirrored_margin;
   // Where landmarks strain the map, the best coarse map may be too crumpled to be refined.
   const auto differing =
       options.alternatives > 0 ? differing_maps(*verdict) : std::vector<std::vector<size_t>>{};
@@ -133,7 +134,7 @@ Result<MatchedMap> match_closed(const TriangleMesh& source,
     winner = i;
   }
   if (!result) return tl::unexpected(result.error());
-  if (winner > 0) matched.margin = 0;
+  if (winner > 0) matched.margin = matched.mirrored_margin = 0;
   matched.result = std::move(*result);
   if (options.alternatives > 0) stage("others");
   for (const size_t i : differing.empty() ? std::vector<size_t>{} : differing[winner]) {

@@ -37,6 +37,7 @@ struct Alternative {
 struct MatchedMap {
   std::vector<Candidate> ranking;  ///< by the finals and the judge; ranking[0] was mapped
   double margin = 0;  ///< Verdict::margin; 0 if the winner could not be refined and a rival was
+  double mirrored_margin = 0;  ///< Verdict::mirrored_margin, likewise
   MapResult result;
   /// Other ways to see it: finished maps of the finals, best first, of which each lies farther than
   /// kSameMap from the winner and from those before it.

@@ -288,11 +288,10 @@ ordered_json images_json(const TexturedMesh& mesh) {
 }
 
 ordered_json matches_json(const std::vector<Landmark>& landmarks,
-                          double margin,
+                          double confidence,
                           const SurfaceView& source,
                           const SurfaceView& target) {
   ordered_json matches = ordered_json::array();
-  const double confidence = std::clamp(margin / kSafeMargin, 0.0, 1.0);
   for (const Landmark& l : landmarks)
     matches.push_back({{"source", point(source.mesh.prepared.mesh.position(l.source_vertex))},
                        {"target", point(target.mesh.prepared.mesh.position(l.target_vertex))},
@@ -369,13 +368,14 @@ Result<std::string> pair_page(const PairRun& run, const RunReport& report) {
     if (!carried) return tl::unexpected(carried.error());
     const VertexDistortion distortion =
         vertex_distortion(map, run.source.prepared.mesh, run.target.prepared.mesh);
-    maps.push_back({{"name", label},
-                    {"margin", std::isfinite(margin) ? ordered_json(margin) : ordered_json()},
-                    {"materials", materials_json(carried->mesh)},
-                    {"source", MeshWriter(*source, places).write(*own, distortion.source)},
-                    {"target", MeshWriter(*target, places).write(*carried, distortion.target)},
-                    {"matches", matches_json(landmarks, margin, *source, *target)},
-                    {"median_energy", result.quality.median}});
+    maps.push_back(
+        {{"name", label},
+         {"margin", std::isfinite(margin) ? ordered_json(margin) : ordered_json()},
+         {"materials", materials_json(carried->mesh)},
+         {"source", MeshWriter(*source, places).write(*own, distortion.source)},
+         {"target", MeshWriter(*target, places).write(*carried, distortion.target)},
+         {"matches", matches_json(landmarks, confidence(margin, result.quality), *source, *target)},
+         {"median_energy", result.quality.median}});
     return {};
   };
   const MatchedMap& matched = run.matched;

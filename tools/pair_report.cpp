@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "tools/pair_page.hpp"
 
 namespace crosspatch {
@@ -107,9 +109,33 @@ std::map<std::string, double> map_figures(const PairRun& run) {
   figures["coarse_energy"] = matched.ranking.front().energy;
   figures["candidates"] = static_cast<double>(matched.ranking.size());
   figures["margin"] = matched.margin;
+  figures["mirrored_margin"] = matched.mirrored_margin;
+  figures["confidence"] = confidence(matched.margin, matched.result.quality);
   for (std::size_t i = 0; i < matched.alternatives.size(); ++i)
     figures[fmt::format("margin_{}", i + 2)] = matched.alternatives[i].margin;
   return figures;
+}
+
+/// Why a map that was found is not sure, or nothing.
+std::string doubt_sentence(const MatchedMap& matched) {
+  const double energy = matched.result.quality.percentile_99;
+  if (matched.ranking.empty() || confidence(matched.margin, matched.result.quality) >= 1) return "";
+  if (!(matched.margin < kSafeMargin))
+    return fmt::format(
+        "the two may not correspond everywhere: 1 % of the area is distorted beyond an energy of "
+        "{:.0f}, up to {:.0f} is safe",
+        energy,
+        kSafeEnergy);
+  const char* sides = "";
+  if (matched.mirrored_margin < kSafeMargin)
+    sides = ", left and right may be exchanged";
+  else if (std::isfinite(matched.mirrored_margin))
+    sides = ", though not between left and right";
+  return fmt::format(
+      "the choice among the candidate maps is unsure{}: the margin is {:.3f}, {} is safe",
+      sides,
+      matched.margin,
+      kSafeMargin);
 }
 
 }  // namespace
@@ -130,12 +156,8 @@ RunReport pair_report(const PairArguments& arguments, const PairRun& run) {
   report.exit_code =
       static_cast<int>(report.warnings.empty() ? ExitCode::kDone : ExitCode::kGateFailed);
   if (run.matched.is_partial()) report.warnings.push_back(partial_warning(run.matched));
-  if (!run.matched.ranking.empty() && run.matched.margin < kSafeMargin)
-    report.warnings.push_back(fmt::format(
-        "the choice among the candidate maps is unsure, left and right may be exchanged: "
-        "the margin is {:.3f}, {} is safe",
-        run.matched.margin,
-        kSafeMargin));
+  if (const std::string doubt = doubt_sentence(run.matched); !doubt.empty())
+    report.warnings.push_back(doubt);
   return report;
 }
 

@@ -111,7 +111,7 @@ Result<MatchedMap> read_map(const PairFiles& files, PairRun& run, Progress& prog
       .and_then([&](const std::string& text) { return parse_given(text, files.map_base, run); })
       .map([&](SurfaceMap map) {
         MatchedMap matched;
-        matched.margin = std::numeric_limits<double>::infinity();
+        matched.margin = matched.mirrored_margin = std::numeric_limits<double>::infinity();
         matched.result.quality = measure_map(map, source, target);
         if (run.from_points)
           matched.result.quality.source_coverage = run.from_points->source_coverage;
@@ -148,6 +148,10 @@ Result<MorseSmaleComplex> detailed_complex(const TriangleMesh& mesh) {
 }
 
 }  // namespace
+
+double confidence(double margin, const MapQuality& quality) {
+  return std::clamp(std::min(margin / kSafeMargin, kSafeEnergy / quality.percentile_99), 0.0, 1.0);
+}
 
 std::string crumpled_sentence(const MatchedMap& matched) {
   const double energy = matched.result.quality.percentile_99;
@@ -259,11 +263,11 @@ Result<Matching> judged_matching(const PairRun& run, Progress& progress) {
     given_source.insert(landmark.source_vertex);
     given_target.insert(landmark.target_vertex);
   }
-  const double confidence = std::clamp(run.matched.margin / kSafeMargin, 0.0, 1.0);
+  const double trust = confidence(run.matched.margin, run.matched.result.quality);
   for (Match match : match_nodes(source, target, *a, *b, run.matched.result.map).matches) {
     if (given_source.contains(match.source_vertex) || given_target.contains(match.target_vertex))
       continue;
-    match.confidence *= confidence;
+    match.confidence *= trust;
     matching.matches.push_back(match);
   }
   if (matching.matches.empty())

@@ -42,14 +42,21 @@ Result<PairRun> run_pair(const PairFiles& files, Progress& progress);
 Result<Matching> paper_matching(const PairRun& run, Progress& progress);
 
 /// The critical points of both surfaces that the map of a finished run brings together, after the
-/// landmarks that were given. Their confidence is that of match_nodes times the margin over
-/// kSafeMargin, at most 1; that of landmarks is 1. kNoCorrespondence if there are none.
+/// landmarks that were given. Their confidence is that of match_nodes times that of the map; that
+/// of landmarks is 1. kNoCorrespondence if there are none.
 Result<Matching> judged_matching(const PairRun& run, Progress& progress);
 
-/// Margin of the finals from which on the winner's mean error was below 10 % of the square root of
-/// the area in 149 of 157 pairs of FAUST, TOSCA, SMAL and SHREC'07, of 200 that were tried, and
-/// below 16 % in the others.
-constexpr double kSafeMargin = 0.1;
+/// A map that was found is *sure* from this margin of the finals on, if 99 % of it stay below
+/// kSafeEnergy.
+constexpr double kSafeMargin = 0.13;
+
+/// Energy that 99 % of a sure map stay below, a stretch of ten: beyond it one surface has parts
+/// that the other lacks, or the two are not alike at all.
+constexpr double kSafeEnergy = 100;
+
+/// How far a map that was found can be trusted, in [0, 1]: 1 is sure. The least of the margin over
+/// kSafeMargin and of kSafeEnergy over the energy that 99 % stay below.
+double confidence(double margin, const MapQuality& quality);
 
 /// Energy (|J|^2 + |J^-1|^2; isometry: 4) that 99 % of a map that was found may reach: beyond it, a
 /// stretch of thirty, surfaces were forced on each other that do not correspond. The right maps of

@@ -41,10 +41,10 @@ std::vector<FigureVerdict> verdicts(const std::map<std::string, double>& quality
     return [band](double v) { return level(1 - v, band); };
   };
   const auto less = [](const Band& band) { return [band](double v) { return level(v, band); }; };
-  add("margin",
+  add("confidence",
       "Confidence",
-      number,
-      [](double v) { return v >= kSafeMargin ? 0 : (v >= kSafeMargin / 3 ? 1 : 2); },
+      percent,
+      [](double v) { return v >= 1 ? 0 : (v >= 1.0 / 3 ? 1 : 2); },
       {"No other way to see it comes close: left, right, front and back can be trusted.",
        "Another way to see it is not much worse. Look whether left and right are right.",
        "Another way to see it is about as good. Look closely; one or two landmarks settle it."});

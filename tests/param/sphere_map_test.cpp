@@ -231,7 +231,35 @@ TEST(Judge, PrefersTheTruthToSwappedLimbs) {
   for (std::size_t i = 0; i < 4; ++i)
     EXPECT_EQ(verdict->ranking[0].landmarks[i].target_vertex, tips_b[i]);
   EXPECT_GT(verdict->margin, 0.1);
+  EXPECT_GE(verdict->mirrored_margin, verdict->margin);
   EXPECT_EQ(verdict->ranking.size(), candidates.size());
+
+  // The mirrored candidate plays, however far behind it is.
+  const auto two = judge(*source, *target, candidates, {.finalists = 1, .finals = 1, .leaders = 1});
+  ASSERT_TRUE(two) << two.error().message;
+  ASSERT_EQ(two->finals.front().candidate, 0u);
+  ASSERT_GT(two->finals.size(), 1u);
+  for (std::size_t i = 1; i < two->finals.size(); ++i)
+    EXPECT_EQ(exchanged_pairs(two->ranking[0], two->ranking[two->finals[i].candidate]), 2);
+  const auto duel = play_finals(*source, *target, *two, MapOptions{});
+  ASSERT_TRUE(duel) << duel.error().message;
+  EXPECT_TRUE(std::isfinite(duel->mirrored_margin));
+}
+
+TEST(Judge, CountsThePairsThatAreExchanged) {
+  const auto candidate = [](const std::vector<int>& targets) {
+    Candidate c;
+    for (std::size_t i = 0; i < targets.size(); ++i)
+      c.landmarks.push_back({static_cast<int>(i), targets[i], false});
+    return c;
+  };
+  const Candidate identity = candidate({10, 11, 12, 13, 14});
+  EXPECT_EQ(exchanged_pairs(identity, identity), 0);
+  EXPECT_EQ(exchanged_pairs(identity, candidate({11, 10, 12, 13, 14})), 1);
+  EXPECT_EQ(exchanged_pairs(identity, candidate({11, 10, 13, 12, 14})), 2);
+  EXPECT_EQ(exchanged_pairs(identity, candidate({11, 12, 10, 13, 14})), 0);  // three in a ring
+  EXPECT_EQ(exchanged_pairs(identity, candidate({11, 10, 12, 13, 15})), 0);  // another tip
+  EXPECT_EQ(exchanged_pairs(identity, candidate({11, 10, 12, 13})), 0);      // fewer tips
 }
 
 TEST(MakeMap, FindsTheSameSurfaceInAnotherTriangulation) {

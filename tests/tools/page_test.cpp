@@ -21,7 +21,7 @@ TEST(Base64, IsThatOfTheStandard) {
 }
 
 TEST(Verdicts, SpeakOfTheFiguresThatThereAre) {
-  const auto told = verdicts({{"margin", 0.05}, {"flipped_triangles", 0}, {"threads", 3}});
+  const auto told = verdicts({{"confidence", 0.5}, {"flipped_triangles", 0}, {"threads", 3}});
   ASSERT_EQ(told.size(), 2u);
   EXPECT_EQ(told[0].name, "Confidence");
   EXPECT_EQ(told[0].level, "fair");
