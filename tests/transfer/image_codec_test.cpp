@@ -121,6 +121,31 @@ TEST(ImageCodec, JpegHasColourAtFullResolutionAndNoAlpha) {
   }
 }
 
+TEST(ImageCodec, HighImagesComeBackWhole) {
+  // More rows than are converted at a time, and no multiple of that.
+  RasterImage high = image(3, 150, 4, {});
+  for (int i = 0; i < 3 * 150 * 4; ++i)
+    high.values.push_back(static_cast<std::uint16_t>(i * 37 % 256 * 257));
+  for (const int bits : {8, 16})
+    for (const int compression : {1, 6}) {
+      const auto bytes = encode_image_file(high, {.bits = bits, .png_compression = compression});
+      ASSERT_TRUE(bytes) << bytes.error().message;
+      const auto back = decode_image_file(*bytes);
+      ASSERT_TRUE(back) << back.error().message;
+      EXPECT_EQ(back->values, high.values) << bits << ' ' << compression;
+    }
+}
+
+TEST(ImageCodec, FurtherChannelsAreLeftOut) {
+  const RasterImage four = image(2, 1, 4, {257, 514, 771, 1028, 1285, 1542, 1799, 2056});
+  for (const int bits : {8, 16}) {
+    const auto back = decode_image_file(*encode_image_file(four, {.bits = bits}), 3);
+    ASSERT_TRUE(back) << back.error().message;
+    EXPECT_EQ(back->channels, 3);
+    EXPECT_EQ(back->values, (std::vector<std::uint16_t>{257, 514, 771, 1285, 1542, 1799}));
+  }
+}
+
 TEST(ImageCodec, OtherFormatsAreRefused) {
   const auto exr = encode_image_file(image(1, 1, 3, {0, 0, 0}), {.format = ImageFormat::kExr});
   const auto read = decode_image_file(*exr);
