@@ -37,6 +37,7 @@ class Assembly {
     std::vector<int> row(overlay.points.size(), -1);
     std::vector<int> used;
     mesh_.triangles.resize(static_cast<Eigen::Index>(overlay.triangles.size()), 3);
+    reserve(overlay.triangles.size());
     for (std::size_t t = 0; t < overlay.triangles.size(); ++t) {
       const OverlayMesh::Triangle& triangle = overlay.triangles[t];
       mesh_.target_face.push_back(triangle.target_face);
@@ -63,6 +64,15 @@ class Assembly {
   }
 
  private:
+  /// Grown bit by bit, these leave much of the heap in holes.
+  void reserve(std::size_t triangles) {
+    mesh_.target_face.reserve(triangles);
+    mesh_.material.reserve(triangles);
+    mesh_.normals.reserve(3 * triangles);
+    for (auto& set : mesh_.uv_sets) set.reserve(3 * triangles);
+    if (attributes_.colors) mesh_.colors.reserve(3 * triangles);
+  }
+
   /// Interpolation would move a vertex of the target in its last digit.
   Vector3d place(const OverlayMesh& overlay, int point) const {
     const SurfacePoint& p = overlay.points[idx(point)];

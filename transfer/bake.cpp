@@ -102,13 +102,13 @@ void paint_small_faces(BakeCanvas& canvas,
     const std::size_t texel = canvas.texel(x, y);
     if (canvas.state[texel] != kEmpty) continue;
     const TexelSpan middle{y, x, x, Vector3d::Constant(1.0 / 3), Vector3d::Zero()};
-    look.paint(look.triangle(t, c), middle, &canvas.rgba[4 * texel]);
+    look.paint(look.triangle(t, c), middle, &canvas.values[idx(canvas.channels) * texel]);
     canvas.state[texel] = kFilled;
   }
 }
 
 BakeCanvas paint(const Carried& carried, const SourceLook& look, int faces, int size) {
-  BakeCanvas canvas = make_canvas(size);
+  BakeCanvas canvas = make_canvas(size, look.channels());
   std::vector<std::uint8_t> has_texels(idx(faces), 0);
   for_each_in_bands(carried, size, [&](int t, std::array<int, 2> rows) {
     std::optional<SourceLook::Triangle> triangle;
@@ -120,7 +120,7 @@ BakeCanvas paint(const Carried& carried, const SourceLook& look, int faces, int 
             .store(1, std::memory_order_relaxed);
       }
       const std::size_t texel = canvas.texel(span.left, span.y);
-      look.paint(*triangle, span, &canvas.rgba[4 * texel]);
+      look.paint(*triangle, span, &canvas.values[idx(canvas.channels) * texel]);
       std::fill_n(canvas.state.begin() + static_cast<std::ptrdiff_t>(texel),
                   span.right - span.left + 1,
                   kFilled);
@@ -148,39 +148,42 @@ void count_texels(const BakeCanvas& canvas, const Unwrap& unwrap, BakeStatistics
   s.used = static_cast<double>(inside) / static_cast<double>(canvas.state.size());
 }
 
+/// The painted values as an image, without the one more. It takes their room: a second image would
+/// be the most that a bake ever holds.
+RasterImage as_image(BakeCanvas canvas) {
+  canvas.values.pop_back();
+  return {canvas.size, canvas.size, canvas.channels, std::move(canvas.values)};
+}
+
 /// Normals of the canvas, of unit length again.
-RasterImage finish_normals(const BakeCanvas& canvas) {
-  RasterImage image{canvas.size, canvas.size, 3, {}};
-  image.values.resize(3 * canvas.state.size());
-  for (std::size_t texel = 0; texel < canvas.state.size(); ++texel) {
-    const std::uint16_t* p = &canvas.rgba[4 * texel];
+RasterImage finish_normals(BakeCanvas canvas) {
+  RasterImage image = as_image(std::move(canvas));
+  for (auto p = image.values.begin(); p != image.values.end(); p += 3) {
     Vector3d n = Vector3d(p[0], p[1], p[2]) / 65535 * 2 - Vector3d::Ones();
     n = n.norm() > 1e-6 ? Vector3d(n.normalized()) : Vector3d(Vector3d::UnitZ());
     // The value 128 of 255 stands for zero, so that a flat map reads back flat.
     for (int k = 0; k < 3; ++k)
-      image.values[3 * texel + idx(k)] = static_cast<std::uint16_t>(
+      p[k] = static_cast<std::uint16_t>(
           std::lround(std::clamp((n[k] * 127.5 + 127.5) * 257, 0.0, 65535.0)));
   }
   return image;
 }
 
 /// The painted canvas as an image: stored values, colour not multiplied by alpha.
-RasterImage finish(const BakeCanvas& canvas, bool color, bool has_alpha) {
-  const std::size_t channels = has_alpha ? 4 : 3;
+RasterImage finish(BakeCanvas canvas, bool color) {
+  RasterImage image = as_image(std::move(canvas));
   const std::uint16_t* srgb = srgb_values();
-  RasterImage image{canvas.size, canvas.size, static_cast<int>(channels), {}};
-  image.values.resize(canvas.state.size() * channels);
-  std::uint16_t* out = image.values.data();
-  for (std::size_t texel = 0; texel < canvas.state.size(); ++texel, out += channels) {
-    const std::uint16_t* p = &canvas.rgba[4 * texel];
-    for (std::size_t k = 0; k < 3; ++k) {
-      std::uint32_t plain = p[k];
-      if (has_alpha && p[3] != 0)
-        plain = std::min<std::uint32_t>(65535, (plain * 65535U + p[3] / 2U) / p[3]);
-      out[k] = color ? srgb[plain] : static_cast<std::uint16_t>(plain);
-    }
-    if (has_alpha) out[3] = p[3];
+  if (image.channels == 3) {
+    if (color)
+      for (std::uint16_t& v : image.values) v = srgb[v];
+    return image;
   }
+  for (auto p = image.values.begin(); p != image.values.end(); p += 4)
+    for (int k = 0; k < 3; ++k) {
+      std::uint32_t plain = p[k];
+      if (p[3] != 0) plain = std::min<std::uint32_t>(65535, (plain * 65535U + p[3] / 2U) / p[3]);
+      p[k] = color ? srgb[plain] : static_cast<std::uint16_t>(plain);
+    }
   return image;
 }
 
@@ -272,7 +275,6 @@ Result<RasterImage> bake_channel(const Carried& carried,
   std::optional<Stopwatch> watch(std::in_place, seconds.raster);
   if (channel == Channel::kNormal) look->set_target_tangents(tangents_at_corners(target, carried));
   BakeCanvas canvas = paint(carried, *look, surface.face_count(), carried.size);
-  const bool has_alpha = channel == Channel::kBaseColor && look->has_alpha();
   look.reset();
   watch.emplace(seconds.measure);
   if (channel == Channel::kBaseColor) count_texels(canvas, unwrap, statistics);
@@ -281,8 +283,8 @@ Result<RasterImage> bake_channel(const Carried& carried,
   if (channel != Channel::kNormal)
     continue_across_seams(canvas, surface, unwrap, AtlasOptions{.size = carried.size}.padding());
   push_pull(canvas);
-  if (channel == Channel::kNormal) return finish_normals(canvas);
-  return finish(canvas, is_color(channel), has_alpha);
+  if (channel == Channel::kNormal) return finish_normals(std::move(canvas));
+  return finish(std::move(canvas), is_color(channel));
 }
 
 }  // namespace

@@ -13,11 +13,15 @@ namespace crosspatch {
 namespace {
 
 FourFloats load(const BakeCanvas& canvas, std::size_t texel) {
-  return load_four(&canvas.rgba[4 * texel]);
+  return load_four(&canvas.values[idx(canvas.channels) * texel]);
 }
 
 void store(BakeCanvas& canvas, std::size_t texel, const FourFloats& value) {
-  store_four(value, &canvas.rgba[4 * texel]);
+  std::uint16_t* p = &canvas.values[idx(canvas.channels) * texel];
+  if (canvas.channels == 4)
+    store_four(value, p);
+  else
+    store_three(value, p);
 }
 
 /// The bilinear value at `p` (texels), of those of the four texels around it that were painted
@@ -146,9 +150,46 @@ class AcrossSeam {
   Eigen::Matrix2d to_plane_ = Eigen::Matrix2d::Identity();
 };
 
+/// The side of a half-edge in the image, and the way along it; nothing where it has no length.
+std::optional<Vector2d> direction(const Unwrap& unwrap, int h) {
+  const Vector2d side = unwrap.uv[idx(next(h))] - unwrap.uv[idx(h)];
+  const double length = side.norm();
+  if (!(length > 0)) return std::nullopt;
+  return side / length;
+}
+
+/// How far beyond the end of a side that runs `along`, in shares of the reach, there are texels
+/// whose nearest place on a chart's outline is that end, up to the bisector of the corner there.
+/// `other` is the direction of the outline's other side at that end, away from it.
+double beyond_corner(const Vector2d& along,
+                     const Vector2d& out,
+                     const std::optional<Vector2d>& other) {
+  if (!other) return 1;
+  if (other->dot(out) >= 0) return 0;  // the outline turns outwards: nearer to the other side
+  return std::sqrt(std::max(0.0, 1 - along.dot(*other)) / 2);  // sine of half the turn
+}
+
+/// Directions of the outline's sides after and before h, both away from h; nothing where a side has
+/// no length or is no seam, so that no gutter of its own goes around the corner.
+std::optional<Vector2d> side_after(const TriangleMesh& mesh, const Unwrap& unwrap, int h) {
+  int side = next(h);
+  while (is_joined(mesh, unwrap, side)) side = next(mesh.twin[idx(side)]);
+  if (mesh.twin[idx(side)] < 0) return std::nullopt;
+  return direction(unwrap, side);
+}
+
+std::optional<Vector2d> side_before(const TriangleMesh& mesh, const Unwrap& unwrap, int h) {
+  int side = prev(h);
+  while (is_joined(mesh, unwrap, side)) side = prev(mesh.twin[idx(side)]);
+  if (mesh.twin[idx(side)] < 0) return std::nullopt;
+  const std::optional<Vector2d> along = direction(unwrap, side);
+  if (!along) return std::nullopt;
+  return Vector2d(-*along);
+}
+
 /// Calls visit(h, texel, p, distance) for the texels that were not painted through the map and
 /// whose centres p lie beside a seam h, outside of its face, up to `reach` texels from it; the
-/// distance is in 254ths of that.
+/// distance is in 254ths of that. Some that are nearer to another seam are among them.
 template <class Visit>
 void for_each_gutter_texel(const BakeCanvas& canvas,
                            const TriangleMesh& mesh,
@@ -180,9 +221,11 @@ void for_each_gutter_texel(const BakeCanvas& canvas,
                 static_cast<std::uint8_t>(std::sqrt(square) * (254.0 / reach)));
       }
     };
-    // Wider than the seam: where the outline turns, gutters would gape.
-    const std::array<Vector2d, 4> strip{
-        a - along * reach, b + along * reach, b + (along + out) * reach, a + (out - along) * reach};
+    // Wider than the seam where the outline turns: gutters would gape.
+    const double before = reach * beyond_corner(-along, out, side_before(mesh, unwrap, h));
+    const double after = reach * beyond_corner(along, out, side_after(mesh, unwrap, h));
+    const Vector2d from = a - along * before, to = b + along * after;
+    const std::array<Vector2d, 4> strip{from, to, to + out * reach, from + out * reach};
     for_each_span({strip[0], strip[1], strip[2]}, 1e-3, {0, size}, size, look);
     for_each_span({strip[0], strip[2], strip[3]}, 1e-3, {0, size}, size, look);
   }
@@ -190,22 +233,26 @@ void for_each_gutter_texel(const BakeCanvas& canvas,
 
 /// Means of the texels that are not empty in blocks of 2 x 2.
 BakeCanvas halved(const BakeCanvas& fine) {
-  BakeCanvas coarse = make_canvas((fine.size + 1) / 2);
-  for (int y = 0; y < coarse.size; ++y)
+  BakeCanvas coarse = make_canvas((fine.size + 1) / 2, fine.channels);
+  for (int y = 0; y < coarse.size; ++y) {
+    const int rows = std::min(2, fine.size - 2 * y);
     for (int x = 0; x < coarse.size; ++x) {
+      const int columns = std::min(2, fine.size - 2 * x);
       FourFloats sum{0, 0, 0, 0};
       int count = 0;
-      for (int j = 2 * y; j < std::min(fine.size, 2 * y + 2); ++j)
-        for (int i = 2 * x; i < std::min(fine.size, 2 * x + 2); ++i) {
-          const std::size_t texel = fine.texel(i, j);
+      for (int j = 0; j < rows; ++j)
+        for (int i = 0; i < columns; ++i) {
+          const std::size_t texel = fine.texel(2 * x + i, 2 * y + j);
           if (fine.state[texel] == kEmpty) continue;
           sum += load(fine, texel);
           ++count;
         }
       if (count == 0) continue;
-      store(coarse, coarse.texel(x, y), sum / static_cast<float>(count));
-      coarse.state[coarse.texel(x, y)] = kFilled;
+      const std::size_t texel = coarse.texel(x, y);
+      store(coarse, texel, sum / static_cast<float>(count));
+      coarse.state[texel] = kFilled;
     }
+  }
   return coarse;
 }
 
@@ -225,10 +272,12 @@ FourFloats smooth(const BakeCanvas& coarse, int x, int y) {
 
 }  // namespace
 
-BakeCanvas make_canvas(int size) {
+BakeCanvas make_canvas(int size, int channels) {
   const std::size_t texels = idx(size) * idx(size);
-  return {
-      size, std::vector<std::uint16_t>(4 * texels, 0), std::vector<std::uint8_t>(texels, kEmpty)};
+  return {size,
+          channels,
+          std::vector<std::uint16_t>(idx(channels) * texels + 1, 0),
+          std::vector<std::uint8_t>(texels, kEmpty)};
 }
 
 void continue_across_seams(BakeCanvas& canvas,

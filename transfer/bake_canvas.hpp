@@ -16,7 +16,9 @@ enum TexelState : std::uint8_t {
 /// A square image in the making.
 struct BakeCanvas {
   int size = 0;
-  std::vector<std::uint16_t> rgba;  ///< linear, in 65535ths; 4 size^2
+  int channels = 4;  ///< 3: there is no alpha
+  /// Linear, in 65535ths; channels * size^2, and one more: texels are read four values at once.
+  std::vector<std::uint16_t> values;
   std::vector<std::uint8_t> state;  ///< TexelState, size^2
 
   [[nodiscard]] std::size_t texel(int x, int y) const {
@@ -25,7 +27,8 @@ struct BakeCanvas {
   }
 };
 
-BakeCanvas make_canvas(int size);
+/// An empty canvas. `channels`: 3 or 4.
+BakeCanvas make_canvas(int size, int channels);
 
 /// Paints empty texels up to `reach` texels from a seam, the nearest, with what lies across it: the
 /// faces there are unfolded into the plane of the seam's face, and the canvas is read where it was

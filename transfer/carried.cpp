@@ -108,17 +108,19 @@ Carried carry(const AttributedMesh& source,
   const OverlayMesh overlay =
       make_overlay_mesh(attributes, source.prepared.mesh, target.prepared.mesh, map);
   Carried carried = lay_over(source, target, attributes, overlay, unwrap, size);
+  s.overlay_triangles = carried.mesh.triangle_count();
+  const std::vector<double> area = areas(carried.mesh);
+  s.coverage = coverage(overlay, area);
+  s.density_ratio = density_ratio(carried, attributes, area, overlay);
   const std::vector<Material>& materials = source.soup.materials;
   if (std::none_of(materials.begin(), materials.end(), [](const Material& m) {
         return m.normal.image >= 0;
       })) {  // frames are not needed, and as large as an image
     carried.target_bary = {};
     carried.mesh.normals = {};
+    carried.mesh.positions = {};
+    carried.mesh.map_point = {};
   }
-  s.overlay_triangles = carried.mesh.triangle_count();
-  const std::vector<double> area = areas(carried.mesh);
-  s.coverage = coverage(overlay, area);
-  s.density_ratio = density_ratio(carried, attributes, area, overlay);
   return carried;
 }
 

@@ -10,8 +10,8 @@ namespace crosspatch {
 
 /// The overlay, with the places of its triangles in the image.
 struct Carried {
-  int size = 0;  ///< of the image, texels a side
-  TexturedMesh mesh;
+  int size = 0;       ///< of the image, texels a side
+  TexturedMesh mesh;  ///< without places and normals if no material has a normal map
   std::vector<std::array<Vector2d, 3>> texels;  ///< per triangle
   std::vector<Vector3d> target_bary;  ///< per corner, in its target face; for normal maps only
 };

@@ -19,13 +19,22 @@ inline FourFloats load_four(const std::uint16_t* p) {
 }
 
 /// Rounds to the nearest; what is outside of [0, 65535] goes to its ends.
-inline void store_four(const FourFloats& values, std::uint16_t* p) {
+inline FourShorts rounded(const FourFloats& values) {
   const FourFloats none{0, 0, 0, 0}, most{65535, 65535, 65535, 65535};
   FourFloats inside = values > none ? values : none;
   inside = inside < most ? inside : most;
-  const FourShorts narrow =
-      __builtin_convertvector(__builtin_convertvector(inside + 0.5F, FourInts), FourShorts);
+  return __builtin_convertvector(__builtin_convertvector(inside + 0.5F, FourInts), FourShorts);
+}
+
+inline void store_four(const FourFloats& values, std::uint16_t* p) {
+  const FourShorts narrow = rounded(values);
   std::memcpy(p, &narrow, sizeof narrow);
+}
+
+/// The first three only.
+inline void store_three(const FourFloats& values, std::uint16_t* p) {
+  const FourShorts narrow = rounded(values);
+  std::memcpy(p, &narrow, 3 * sizeof *p);
 }
 
 inline Eigen::Array4f to_array(const FourFloats& v) {

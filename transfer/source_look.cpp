@@ -88,7 +88,7 @@ Status SourceLook::load(int material) {
   }
   if (textures_.contains({ref.image, premultiply})) return {};
   const ImageFile& file = mesh_->images[idx(ref.image)];
-  Result<RasterImage> image = decode_image_file(file.bytes);
+  Result<RasterImage> image = decode_image_file(file.bytes, premultiply ? 4 : 3);
   if (!image)
     return fail(ErrorCode::kBadInput, "texture \"" + file.name + "\": " + image.error().message);
   const ColorSpace space = is_color(channel_) ? ColorSpace::kSrgb : ColorSpace::kLinear;
@@ -165,13 +165,22 @@ Array4f SourceLook::at(const Triangle& triangle, const Vector3d& bary) const {
   return value * triangle.factor;
 }
 
-void SourceLook::paint(const Triangle& triangle, const TexelSpan& span, std::uint16_t* rgba) const {
+void SourceLook::paint(const Triangle& triangle,
+                       const TexelSpan& span,
+                       std::uint16_t* values) const {
   const int count = span.right - span.left + 1;
   const Vector3d first = span.at_zero + span.left * span.per_x;
   const Vector3d last = span.at_zero + span.right * span.per_x;
   const bool inside = first.minCoeff() >= 0 && last.minCoeff() >= 0;
   const bool plain = channel_ == Channel::kMetallicRoughness || channel_ == Channel::kEmissive ||
                      (channel_ == Channel::kBaseColor && mesh_->colors.empty());
+  const auto store = [this, &values](const FourFloats& value) {
+    if (has_alpha_)
+      store_four(value, values);
+    else
+      store_three(value, values);
+    values += channels();
+  };
   if (inside && plain && triangle.texture != nullptr) {
     Vector2d uv = Vector2d::Zero(), step = Vector2d::Zero();
     for (int k = 0; k < 3; ++k) {
@@ -180,19 +189,22 @@ void SourceLook::paint(const Triangle& triangle, const TexelSpan& span, std::uin
     }
     const Array4f& f = triangle.factor;
     const FourFloats factors{f[0], f[1], f[2], f[3]};
-    for (int i = 0; i < count; ++i, uv += step) {
-      FourFloats value =
-          sample_four(*triangle.texture, *triangle.ref, uv.cast<float>(), triangle.footprint);
-      if (triangle.opaque) value[3] = 65535;
-      store_four(value * factors, rgba + 4 * i);
-    }
+    const bool opaque = triangle.opaque;
+    sample_row(*triangle.texture,
+               *triangle.ref,
+               {uv, step, count},
+               triangle.footprint,
+               [&](FourFloats value) {
+                 if (opaque) value[3] = 65535;
+                 store(value * factors);
+               });
     return;
   }
   for (int i = 0; i < count; ++i) {
     Vector3d bary = (first + i * span.per_x).cwiseMax(0.0);
     bary /= bary.sum();
     const Array4f value = at(triangle, bary);
-    store_four(FourFloats{value[0], value[1], value[2], value[3]} * 65535, rgba + 4 * i);
+    store(FourFloats{value[0], value[1], value[2], value[3]} * 65535);
   }
 }
 

@@ -54,12 +54,12 @@ class SourceLook {
 
   [[nodiscard]] Eigen::Array4f at(const Triangle& triangle, const Vector3d& bary) const;
 
-  /// The values of a span's texels, in 65535ths, four a texel; points beside the triangle, as
+  /// The values of a span's texels, in 65535ths, channels() a texel; points beside the triangle, as
   /// rounding has them, count as on its sides.
-  void paint(const Triangle& triangle, const TexelSpan& span, std::uint16_t* rgba) const;
+  void paint(const Triangle& triangle, const TexelSpan& span, std::uint16_t* values) const;
 
-  /// Whether any value may have an alpha below 1.
-  [[nodiscard]] bool has_alpha() const { return has_alpha_; }
+  /// 4 where any value may have an alpha below 1, else 3.
+  [[nodiscard]] int channels() const { return has_alpha_ ? 4 : 3; }
 
   /// For normals: the tangents that the painted image will be read with, one a corner of the mesh;
   /// see corner_tangents.

@@ -31,21 +31,21 @@ inline void paint(Surface& s,
                   int size,
                   const std::function<Vector3d(const Vector3d&)>& look) {
   const TriangleMesh& mesh = s.prepared.mesh;
-  BakeCanvas canvas = make_canvas(size);
+  BakeCanvas canvas = make_canvas(size, 3);
   for (int f = 0; f < mesh.face_count(); ++f)
     for_each_texel(
         in_texels(unwrap, f, size), 1e-4, {0, size}, size, [&](int x, int y, const Vector3d& b) {
           const Vector3d color = look(position(mesh, {f, b}));
           for (int k = 0; k < 3; ++k)
-            canvas.rgba[4 * canvas.texel(x, y) + idx(k)] =
+            canvas.values[3 * canvas.texel(x, y) + idx(k)] =
                 static_cast<std::uint16_t>(std::lround(std::clamp(color[k], 0.0, 1.0) * 65535));
           canvas.state[canvas.texel(x, y)] = kFilled;
         });
   continue_across_seams(canvas, mesh, unwrap, 8);
   push_pull(canvas);
   RasterImage image{size, size, 3, {}};
-  for (std::size_t i = 0; i < canvas.rgba.size(); ++i)
-    if (i % 4 != 3) image.values.push_back(to_stored(canvas.rgba[i], ColorSpace::kSrgb));
+  for (std::size_t i = 0; i < 3 * canvas.state.size(); ++i)
+    image.values.push_back(to_stored(canvas.values[i], ColorSpace::kSrgb));
   texture(
       s, [](int, const Vector3d&) { return Vector2d::Zero(); }, size);
   s.soup.uv_sets.back() = unwrap.uv;
