@@ -47,8 +47,8 @@ struct Judgement {
 
 /// Builds the unoptimised bijective map of every candidate on the coarse levels and ranks them by
 /// its distortion, the mean over both directions of the mean logarithm of the symmetric Dirichlet
-/// energy. `candidates` are given in the order of their plausibility. Maps keep orientation, so mirrored and swapped assignments pay with twists.
-/// kNoCorrespondence if no candidate has a map.
+/// energy. `candidates` are given in the order of their plausibility. Maps keep orientation, so
+/// mirrored and swapped assignments pay with twists. kNoCorrespondence if no candidate has a map.
 Result<Judgement> judge(const Shape& source,
                         const Shape& target,
                         std::vector<Candidate> candidates,
