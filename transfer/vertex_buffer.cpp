@@ -25,10 +25,7 @@ class Welder {
     std::array<std::array<float, 3>, 3> p;
     for (int k = 0; k < 3; ++k)
       p[idx(k)] = to_float(mesh_.positions.row(mesh_.triangles(t, k)).transpose());
-    if (p[0] == p[1] || p[1] == p[2] || p[2] == p[0]) {
-      ++buffer_.dropped_triangles;
-      return;
-    }
+    if (p[0] == p[1] || p[1] == p[2] || p[2] == p[0]) return;
     for (int k = 0; k < 3; ++k) buffer_.indices.push_back(vertex(t, k, p[idx(k)]));
   }
 

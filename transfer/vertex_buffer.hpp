@@ -22,11 +22,11 @@ struct VertexBuffer {
   std::vector<std::array<float, 4>> tangents;  ///< w = 1 or -1: side of the bitangent
   std::vector<int> rows;                       ///< of the mesh's positions
   std::vector<std::uint32_t> indices;
-  int dropped_triangles = 0;  ///< flat after rounding to single precision
 };
 
 /// Welds the corners of the triangles of `material` that agree in every attribute, and in their
-/// position's row if the mesh moves; vertices in order of first use.
+/// position's row if the mesh moves; vertices in order of first use. Triangles two corners of which
+/// single precision makes one are left out: they have no extent, and their neighbours close up.
 ///
 /// With `tangent_uv_set` each vertex gets a tangent along increasing u of that set, see
 /// corner_tangents.
