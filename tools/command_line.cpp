@@ -303,7 +303,11 @@ std::string contradiction(const TransferArguments& a) {
     if (given && *format != MeshFormat::kGlb && *format != MeshFormat::kGltf)
       return fmt::format("{}: only a .glb or .gltf can hold it, not '{}'", name, a.output);
   if (a.image_format == ImageFormat::kExr && *format != MeshFormat::kObj)
-    return "--image exr: only an .obj can refer to EXR images";
+    return fmt::format(
+        "--image exr: '{}' cannot refer to EXR images (glTF knows PNG and JPEG, PLY none): write "
+        "an "
+        ".obj",
+        a.output);
   if (a.round_trip && a.mode != TransferMode::kBake) return "--round-trip: it needs --mode bake";
   if (a.round_trip && a.image_format == ImageFormat::kExr)
     return "--round-trip: it reads PNG and JPEG, not EXR";

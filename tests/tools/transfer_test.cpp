@@ -51,11 +51,28 @@ TEST_F(PairOfSurfaces, BakedImagesLieBesideTheirMesh) {
   EXPECT_FALSE(report["quality"].contains("margin"));  // nothing was chosen
 }
 
+TEST_F(PairOfSurfaces, ExrImagesLieBesideAnObjAndHoldHalfFloats) {
+  const test::Outcome done =
+      run("transfer source.obj target.off --quiet --landmarks pairs.txt --mode bake --size 64 "
+          "--texture checker --image exr --output out/b.obj");
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(written(), testing::UnorderedElementsAre("b.obj", "b.mtl", "b_base_color.exr"));
+  EXPECT_THAT(test::read_text(folder / "out/b.mtl"), HasSubstr("map_Kd b_base_color.exr\n"));
+  const std::string exr = test::read_text(folder / "out/b_base_color.exr");
+  EXPECT_TRUE(exr.starts_with("\x76\x2f\x31\x01"));  // the format's magic number
+  // A channel's entry: its name, then its kind, of which 1 are half floats.
+  for (const char channel : {'R', 'G', 'B'})
+    EXPECT_THAT(exr, HasSubstr(std::string{channel, 0, 1, 0, 0, 0})) << channel;
+}
+
 TEST_F(PairOfSurfaces, TransferOptionsThatContradictAreRefused) {
   const std::string pair = "transfer source.obj target.off --mode bake --output out/";
   for (const auto& [options, line] : std::map<std::string, std::string>{
            {"a.fbx", "--output: 'out/a.fbx' is no .glb, .gltf, .obj or .ply"},
-           {"a.glb --image exr", "--image exr: only an .obj can refer to EXR images"},
+           {"a.glb --image exr",
+            "--image exr: 'out/a.glb' cannot refer to EXR images (glTF knows PNG and JPEG, PLY "
+            "none): "
+            "write an .obj"},
            {"a.glb --image jpeg --bits 16", "--bits 16: a JPEG has 8"},
            {"a.obj --image exr --round-trip", "--round-trip: it reads PNG and JPEG, not EXR"},
            {"a.glb -q -v", "--quiet and --verbose contradict each other"},
