@@ -17,11 +17,7 @@ FourFloats load(const BakeCanvas& canvas, std::size_t texel) {
 }
 
 void store(BakeCanvas& canvas, std::size_t texel, const FourFloats& value) {
-  std::uint16_t* p = &canvas.values[idx(canvas.channels) * texel];
-  if (canvas.channels == 4)
-    store_four(value, p);
-  else
-    store_three(value, p);
+  store_values(value, canvas.channels, &canvas.values[idx(canvas.channels) * texel]);
 }
 
 /// The bilinear value at `p` (texels), of those of the four texels around it that were painted

@@ -1,5 +1,7 @@
 #include "transfer/carried.hpp"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -105,7 +107,7 @@ Carried carry(const AttributedMesh& source,
               int size,
               BakeStatistics& s) {
   const SourceAttributes attributes = source_attributes(source, size);
-  const OverlayMesh overlay =
+  OverlayMesh overlay =
       make_overlay_mesh(attributes, source.prepared.mesh, target.prepared.mesh, map);
   Carried carried = lay_over(source, target, attributes, overlay, unwrap, size);
   s.overlay_triangles = carried.mesh.triangle_count();
@@ -121,6 +123,9 @@ Carried carry(const AttributedMesh& source,
     carried.mesh.positions = {};
     carried.mesh.map_point = {};
   }
+  // Images come next, and no piece of the heap that the overlay lay in would serve them.
+  overlay = {};
+  malloc_trim(0);
   return carried;
 }
 

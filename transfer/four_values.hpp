@@ -26,15 +26,13 @@ inline FourShorts rounded(const FourFloats& values) {
   return __builtin_convertvector(__builtin_convertvector(inside + 0.5F, FourInts), FourShorts);
 }
 
-inline void store_four(const FourFloats& values, std::uint16_t* p) {
+/// The first three or all four.
+inline void store_values(const FourFloats& values, int channels, std::uint16_t* p) {
   const FourShorts narrow = rounded(values);
-  std::memcpy(p, &narrow, sizeof narrow);
-}
-
-/// The first three only.
-inline void store_three(const FourFloats& values, std::uint16_t* p) {
-  const FourShorts narrow = rounded(values);
-  std::memcpy(p, &narrow, 3 * sizeof *p);
+  if (channels == 4)
+    std::memcpy(p, &narrow, sizeof narrow);
+  else
+    std::memcpy(p, &narrow, 3 * sizeof *p);
 }
 
 inline Eigen::Array4f to_array(const FourFloats& v) {

@@ -34,7 +34,7 @@ struct ImageEncoding {
   bool is_color = true;   ///< the values are sRGB-encoded; an EXR stores them linear
   int jpeg_quality = 95;  ///< 1 to 100. Ours: no visible blocks on fur
   /// 0 to 9: up to 3 is quick, more is small. Measured on textures with 4096 texels a side: 4 takes
-  /// four times as long as 3 for 12 to 16 % less.
+  /// more than three times as long as 3 for 12 to 16 % less.
   int png_compression = 3;
 };
 

@@ -6,6 +6,7 @@
 
 #include "core/index.hpp"
 #include "transfer/tangents.hpp"
+#include "transfer/texels_in_use.hpp"
 
 namespace crosspatch {
 namespace {
@@ -92,8 +93,14 @@ Status SourceLook::load(int material) {
   if (!image)
     return fail(ErrorCode::kBadInput, "texture \"" + file.name + "\": " + image.error().message);
   const ColorSpace space = is_color(channel_) ? ColorSpace::kSrgb : ColorSpace::kLinear;
+  // What lies between the islands of a texture, often black or white, must not run into them.
+  std::vector<bool> in_use =
+      texels_in_use(*mesh_, channel_, ref.image, {image->width, image->height});
   textures_[{ref.image, premultiply}] =
-      make_pyramid(std::move(*image), space, premultiply ? Alpha::kPremultiplied : Alpha::kIgnored);
+      make_pyramid(std::move(*image),
+                   space,
+                   premultiply ? Alpha::kPremultiplied : Alpha::kIgnored,
+                   std::move(in_use));
   return {};
 }
 
@@ -174,12 +181,9 @@ void SourceLook::paint(const Triangle& triangle,
   const bool inside = first.minCoeff() >= 0 && last.minCoeff() >= 0;
   const bool plain = channel_ == Channel::kMetallicRoughness || channel_ == Channel::kEmissive ||
                      (channel_ == Channel::kBaseColor && mesh_->colors.empty());
-  const auto store = [this, &values](const FourFloats& value) {
-    if (has_alpha_)
-      store_four(value, values);
-    else
-      store_three(value, values);
-    values += channels();
+  const auto add = [channels = channels(), &values](const FourFloats& value) {
+    store_values(value, channels, values);
+    values += channels;
   };
   if (inside && plain && triangle.texture != nullptr) {
     Vector2d uv = Vector2d::Zero(), step = Vector2d::Zero();
@@ -196,7 +200,7 @@ void SourceLook::paint(const Triangle& triangle,
                triangle.footprint,
                [&](FourFloats value) {
                  if (opaque) value[3] = 65535;
-                 store(value * factors);
+                 add(value * factors);
                });
     return;
   }
@@ -204,7 +208,7 @@ void SourceLook::paint(const Triangle& triangle,
     Vector3d bary = (first + i * span.per_x).cwiseMax(0.0);
     bary /= bary.sum();
     const Array4f value = at(triangle, bary);
-    store(FourFloats{value[0], value[1], value[2], value[3]} * 65535);
+    add(FourFloats{value[0], value[1], value[2], value[3]} * 65535);
   }
 }
 

@@ -1,8 +1,10 @@
 #include "transfer/texture_pyramid.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "core/index.hpp"
@@ -10,6 +12,7 @@
 namespace crosspatch {
 namespace {
 
+constexpr int kRepeat = 10497;
 constexpr int kClamp = 33071;
 constexpr int kMirror = 33648;
 constexpr float kScale = 1.0F / 65535;
@@ -20,47 +23,74 @@ TexturePyramid::Level make_level(int width, int height, int channels) {
   return level;
 }
 
-/// Averages `from` to half its sides; where those are odd, texels count by the share they have.
-TexturePyramid::Level halved(const TexturePyramid::Level& from) {
-  const std::size_t channels = idx(from.channels);
+/// A value a texel of a level: false where it holds nothing. Empty: all hold something.
+using Mask = std::vector<bool>;
+
+/// How many of the 2 x 2 texels from `texel` on hold something.
+int count_in_block(const Mask& mask, std::size_t texel, std::size_t width) {
+  if (mask.empty()) return 4;
+  return int{mask[texel]} + int{mask[texel + 1]} + int{mask[texel + width]} +
+         int{mask[texel + width + 1]};
+}
+
+/// The mean of the texels of `from` inside [left, right) x [top, bottom] that hold something, each
+/// by the share that lies inside; nothing where none does.
+std::optional<FourFloats> mean(const TexturePyramid::Level& from,
+                               const Mask& mask,
+                               const Eigen::AlignedBox2d& box) {
+  FourFloats sum{0, 0, 0, 0};
+  double weight = 0;
+  for (int j = static_cast<int>(box.min()[1]); j < box.max()[1]; ++j) {
+    const double high = std::min<double>(box.max()[1], j + 1) - std::max<double>(box.min()[1], j);
+    for (int i = static_cast<int>(box.min()[0]); i < box.max()[0]; ++i) {
+      const std::size_t texel = idx(j) * idx(from.width) + idx(i);
+      if (!mask.empty() && !mask[texel]) continue;
+      const double wide = std::min<double>(box.max()[0], i + 1) - std::max<double>(box.min()[0], i);
+      sum += static_cast<float>(high * wide) * load_four(&from.values[idx(from.channels) * texel]);
+      weight += high * wide;
+    }
+  }
+  if (weight == 0) return std::nullopt;
+  return sum / static_cast<float>(weight);
+}
+
+/// Averages `from` to half its sides; where those are odd, texels count by the share they have, and
+/// those that hold nothing do not count. `mask` becomes that of the result.
+TexturePyramid::Level halved(const TexturePyramid::Level& from, Mask& mask) {
+  const std::size_t channels = idx(from.channels), row = channels * idx(from.width);
   TexturePyramid::Level to =
       make_level(std::max(1, from.width / 2), std::max(1, from.height / 2), from.channels);
-  const std::size_t row = channels * idx(from.width);
-  if (from.width == 2 * to.width && from.height == 2 * to.height) {
-    std::uint16_t* out = to.values.data();
-    for (int y = 0; y < to.height; ++y) {
-      const std::uint16_t* in = &from.values[2 * idx(y) * row];
-      for (int x = 0; x < to.width; ++x, in += channels)
-        for (std::size_t k = 0; k < channels; ++k, ++in, ++out) {
+  const bool even = from.width == 2 * to.width && from.height == 2 * to.height;
+  const auto corner = [&](int x, int y) {  // exact at the far border
+    return Vector2d(static_cast<double>(x) * from.width / to.width,
+                    static_cast<double>(y) * from.height / to.height);
+  };
+  Mask coarse(mask.empty() ? 0 : idx(to.width) * idx(to.height), true);
+  std::size_t texel = 0;
+  for (int y = 0; y < to.height; ++y)
+    for (int x = 0; x < to.width; ++x, ++texel) {
+      std::uint16_t* out = &to.values[channels * texel];
+      const std::size_t first = 2 * (idx(y) * idx(from.width) + idx(x));
+      const int count = even ? count_in_block(mask, first, idx(from.width)) : -1;
+      if (count == 4) {
+        const std::uint16_t* in = &from.values[channels * first];
+        for (std::size_t k = 0; k < channels; ++k, ++in) {
           const std::uint32_t sum =
               std::uint32_t{in[0]} + in[channels] + in[row] + in[row + channels];
-          *out = static_cast<std::uint16_t>((sum + 2) / 4);
+          out[k] = static_cast<std::uint16_t>((sum + 2) / 4);
         }
-    }
-    return to;
-  }
-  const auto span = [](int i, int size, int of) {
-    return std::pair(static_cast<double>(i) * of / size, static_cast<double>(i + 1) * of / size);
-  };
-  for (int y = 0; y < to.height; ++y) {
-    const auto [top, bottom] = span(y, to.height, from.height);
-    for (int x = 0; x < to.width; ++x) {
-      const auto [left, right] = span(x, to.width, from.width);
-      FourFloats sum{0, 0, 0, 0};
-      for (int j = static_cast<int>(top); j < bottom; ++j) {
-        const double high = std::min<double>(bottom, j + 1) - std::max<double>(top, j);
-        for (int i = static_cast<int>(left); i < right; ++i) {
-          const double wide = std::min<double>(right, i + 1) - std::max<double>(left, i);
-          sum += static_cast<float>(high * wide) *
-                 load_four(&from.values[idx(j) * row + channels * idx(i)]);
-        }
+        continue;
       }
-      sum /= static_cast<float>((bottom - top) * (right - left));
-      for (std::size_t k = 0; k < channels; ++k)
-        to.values[channels * (idx(y) * idx(to.width) + idx(x)) + k] =
-            static_cast<std::uint16_t>(sum[k] + 0.5F);
+      const std::optional<FourFloats> value =
+          count == 0 ? std::nullopt : mean(from, mask, {corner(x, y), corner(x + 1, y + 1)});
+      if (value)
+        store_values(*value, from.channels, out);
+      else
+        coarse[texel] = false;
     }
-  }
+  // Where all texels hold something there is nothing to be asked about any more.
+  mask =
+      std::find(coarse.begin(), coarse.end(), false) == coarse.end() ? Mask{} : std::move(coarse);
   return to;
 }
 
@@ -87,14 +117,6 @@ void to_linear(const RasterImage& image, ColorSpace space, int channels, std::ui
   }
 }
 
-TexturePyramid with_coarser_levels(TexturePyramid::Level first) {
-  TexturePyramid pyramid;
-  pyramid.levels.push_back(std::move(first));
-  while (pyramid.levels.back().width > 1 || pyramid.levels.back().height > 1)
-    pyramid.levels.push_back(halved(pyramid.levels.back()));
-  return pyramid;
-}
-
 int wrapped(int i, int size, int mode) {
   if (i >= 0 && i < size) return i;
   if (mode == kClamp) return std::clamp(i, 0, size - 1);
@@ -103,56 +125,6 @@ int wrapped(int i, int size, int mode) {
   if (i < 0) i += period;
   return i < size ? i : 2 * size - 1 - i;
 }
-
-}  // namespace
-
-TexturePyramid make_pyramid(const RasterImage& image, ColorSpace space, Alpha alpha) {
-  const int channels = level_channels(image, alpha);
-  TexturePyramid::Level first = make_level(image.width, image.height, channels);
-  to_linear(image, space, channels, first.values.data());
-  return with_coarser_levels(std::move(first));
-}
-
-TexturePyramid make_pyramid(RasterImage&& image, ColorSpace space, Alpha alpha) {
-  const int channels = level_channels(image, alpha);
-  const std::size_t wanted = idx(channels) * idx(image.width) * idx(image.height) + 1;
-  if (image.channels < channels || image.values.capacity() < wanted)
-    return make_pyramid(std::as_const(image), space, alpha);
-  to_linear(image, space, channels, image.values.data());
-  image.values.resize(wanted);
-  image.values.shrink_to_fit();
-  return with_coarser_levels({image.width, image.height, channels, std::move(image.values)});
-}
-
-Footprint footprint(const TexturePyramid& texture, const Eigen::Matrix2d& step) {
-  constexpr int kMostTaps = 8;
-  const auto& base = texture.levels.front();
-  const Eigen::Matrix2d texels = Vector2d(base.width, base.height).asDiagonal() * step;
-  const double along_x = texels.col(0).norm(), along_y = texels.col(1).norm();
-  // The smaller singular value is the determinant over the larger one; squares of both add up to
-  // the squares of the columns.
-  const double sum = texels.squaredNorm(), product = std::abs(texels.determinant());
-  const double longest =
-      std::sqrt((sum + std::sqrt(std::max(0.0, sum * sum - 4 * product * product))) / 2);
-  const double shortest = longest > 0 ? product / longest : 0;
-  const double needed = std::max({shortest, along_x / kMostTaps, along_y / kMostTaps, 1.0});
-  Footprint f;
-  f.level =
-      static_cast<int>(std::min(std::log2(needed), static_cast<double>(texture.levels.size() - 1)));
-  const double level_texel = std::ldexp(1.0, f.level);
-  const auto taps = [&](double length) {
-    return static_cast<int>(std::clamp(std::ceil(length / level_texel), 1.0, double{kMostTaps}));
-  };
-  f.taps_x = taps(along_x);
-  f.taps_y = taps(along_y);
-  f.along_x = (step.col(0) / f.taps_x).cast<float>();
-  f.along_y = (step.col(1) / f.taps_y).cast<float>();
-  f.first = -0.5F * (static_cast<float>(f.taps_x - 1) * f.along_x +
-                     static_cast<float>(f.taps_y - 1) * f.along_y);
-  return f;
-}
-
-namespace {
 
 /// Largest whole number that is not above x; |x| < 2^31.
 int floored(float x) {
@@ -182,7 +154,121 @@ FourFloats bilinear(const TexturePyramid::Level& level, const TextureRef& ref, f
   return value;
 }
 
+TexturePyramid::Level first_level(const RasterImage& image, ColorSpace space, Alpha alpha) {
+  const int channels = level_channels(image, alpha);
+  TexturePyramid::Level first = make_level(image.width, image.height, channels);
+  to_linear(image, space, channels, first.values.data());
+  return first;
+}
+
+/// Levels from one to that whose texels are as large as a footprint reaches: eight taps each way,
+/// up to two texels apart.
+constexpr std::size_t kReachLevels = 4;
+
+/// Fills the texels of `fine` that hold nothing with what `coarse` has there; only near texels of
+/// `far` that hold something, further away no footprint gets.
+void fill(TexturePyramid::Level& fine,
+          const Mask& mask,
+          const TexturePyramid::Level& coarse,
+          const TexturePyramid::Level& far,
+          const Mask& far_mask) {
+  TextureRef clamped;
+  clamped.wrap_s = clamped.wrap_t = kClamp;
+  const auto is_near = [&](int x, int y) {
+    if (far_mask.empty()) return true;
+    for (int j = y - 1; j <= y + 1; ++j)  // around the image's borders too, as taps may go
+      for (int i = x - 1; i <= x + 1; ++i)
+        if (far_mask[idx(wrapped(j, far.height, kRepeat)) * idx(far.width) +
+                     idx(wrapped(i, far.width, kRepeat))])
+          return true;
+    return false;
+  };
+  const auto part = [](int i, int parts, int of) {  // where part i of so many begins
+    return static_cast<int>((std::int64_t{i} * of + parts - 1) / parts);
+  };
+  for (int v = 0; v < far.height; ++v)
+    for (int u = 0; u < far.width; ++u) {
+      if (!is_near(u, v)) continue;
+      for (int y = part(v, far.height, fine.height); y < part(v + 1, far.height, fine.height); ++y)
+        for (int x = part(u, far.width, fine.width); x < part(u + 1, far.width, fine.width); ++x) {
+          const std::size_t texel = idx(y) * idx(fine.width) + idx(x);
+          if (mask[texel]) continue;
+          const FourFloats value =
+              bilinear(coarse,
+                       clamped,
+                       (static_cast<float>(x) + 0.5F) / static_cast<float>(fine.width),
+                       (static_cast<float>(y) + 0.5F) / static_cast<float>(fine.height));
+          store_values(value, fine.channels, &fine.values[idx(fine.channels) * texel]);
+        }
+    }
+}
+
+TexturePyramid with_coarser_levels(TexturePyramid::Level first, Mask mask) {
+  TexturePyramid pyramid;
+  pyramid.levels.push_back(std::move(first));
+  if (std::find(mask.begin(), mask.end(), false) == mask.end()) mask.clear();
+  std::vector<Mask> masks{std::move(mask)};
+  while (pyramid.levels.back().width > 1 || pyramid.levels.back().height > 1) {
+    Mask next = masks.back();
+    pyramid.levels.push_back(halved(pyramid.levels.back(), next));
+    masks.push_back(std::move(next));
+  }
+  for (std::size_t i = pyramid.levels.size() - 1; i-- > 0;) {
+    const std::size_t far = std::min(i + kReachLevels, pyramid.levels.size() - 1);
+    if (!masks[i].empty())
+      fill(pyramid.levels[i], masks[i], pyramid.levels[i + 1], pyramid.levels[far], masks[far]);
+  }
+  return pyramid;
+}
+
 }  // namespace
+
+TexturePyramid make_pyramid(const RasterImage& image, ColorSpace space, Alpha alpha) {
+  return with_coarser_levels(first_level(image, space, alpha), {});
+}
+
+TexturePyramid make_pyramid(RasterImage&& image,
+                            ColorSpace space,
+                            Alpha alpha,
+                            std::vector<bool> in_use) {
+  const int channels = level_channels(image, alpha);
+  const std::size_t wanted = idx(channels) * idx(image.width) * idx(image.height) + 1;
+  if (image.channels < channels || image.values.capacity() < wanted)
+    return with_coarser_levels(first_level(image, space, alpha), std::move(in_use));
+  to_linear(image, space, channels, image.values.data());
+  image.values.resize(wanted);
+  image.values.shrink_to_fit();
+  return with_coarser_levels({image.width, image.height, channels, std::move(image.values)},
+                             std::move(in_use));
+}
+
+Footprint footprint(const TexturePyramid& texture, const Eigen::Matrix2d& step) {
+  constexpr int kMostTaps = 8;
+  const auto& base = texture.levels.front();
+  const Eigen::Matrix2d texels = Vector2d(base.width, base.height).asDiagonal() * step;
+  const double along_x = texels.col(0).norm(), along_y = texels.col(1).norm();
+  // The smaller singular value is the determinant over the larger one; squares of both add up to
+  // the squares of the columns.
+  const double sum = texels.squaredNorm(), product = std::abs(texels.determinant());
+  const double longest =
+      std::sqrt((sum + std::sqrt(std::max(0.0, sum * sum - 4 * product * product))) / 2);
+  const double shortest = longest > 0 ? product / longest : 0;
+  const double needed = std::max({shortest, along_x / kMostTaps, along_y / kMostTaps, 1.0});
+  Footprint f;
+  f.level =
+      static_cast<int>(std::min(std::log2(needed), static_cast<double>(texture.levels.size() - 1)));
+  const double level_texel = std::ldexp(1.0, f.level);
+  const auto taps = [&](double length) {
+    return static_cast<int>(std::clamp(std::ceil(length / level_texel), 1.0, double{kMostTaps}));
+  };
+  f.taps_x = taps(along_x);
+  f.taps_y = taps(along_y);
+  f.along_x = (step.col(0) / f.taps_x).cast<float>();
+  f.along_y = (step.col(1) / f.taps_y).cast<float>();
+  f.first = -0.5F * (static_cast<float>(f.taps_x - 1) * f.along_x +
+                     static_cast<float>(f.taps_y - 1) * f.along_y);
+  return f;
+}
 
 Eigen::Array4f sample(const TexturePyramid::Level& level,
                       const TextureRef& ref,

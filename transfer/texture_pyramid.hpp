@@ -33,8 +33,14 @@ enum class Alpha {
 
 TexturePyramid make_pyramid(const RasterImage& image, ColorSpace space, Alpha alpha);
 
-/// The same from an image that is not needed any more: the first level takes its room.
-TexturePyramid make_pyramid(RasterImage&& image, ColorSpace space, Alpha alpha);
+/// The same from an image that is not needed any more: the first level takes its room. `in_use`, a
+/// value a texel, or empty for all: texels that have false there are no part of any average. As far
+/// as footprints of places in use reach they are filled smoothly from the others (Gortler et al.
+/// 1996, "The lumigraph", Sec. 3.4), further away they hold anything.
+TexturePyramid make_pyramid(RasterImage&& image,
+                            ColorSpace space,
+                            Alpha alpha,
+                            std::vector<bool> in_use = {});
 
 /// How a texel to be filled covers a texture: the same over a whole triangle.
 struct Footprint {
@@ -63,8 +69,7 @@ inline FourFloats bilinear_inside(const TexturePyramid::Level& level, double x, 
 }
 
 /// `step`: UV per texel to be filled, columns x and y, finite. Taps lie on a grid in the texel to
-/// be filled, no further apart than the texels of the level, which is the finest that needs at most
-/// 8 taps along either side.
+/// be filled, at most 8 along either side, less than two texels of the level apart.
 Footprint footprint(const TexturePyramid& texture, const Eigen::Matrix2d& step);
 
 /// The mean over the footprint around `uv`, with the wrapping of `ref`. Values in [0, 1].

@@ -264,6 +264,21 @@ TEST(Bake, SixteenBitsStaySixteenBits) {
       EXPECT_NEAR(value(image, x, y)[0] * 65535, at(x, y), 16) << x << ' ' << y;
 }
 
+TEST(Bake, WhatLiesBetweenTheIslandsOfATextureDoesNotBleed) {
+  // A grey island on red, baked with texels as large as several of the source's.
+  const auto inside = [](double x) { return x > 0.1 && x < 0.9; };
+  PlanarPair pair = planar_pair(upright);
+  pair.source.soup.images = {shapes::png(160, 3, [&](double u, double v) {
+    return inside(u) && inside(v) ? Eigen::Array4d(0.5, 0.5, 0.5, 1) : Eigen::Array4d(1, 0, 0, 1);
+  })};
+  const auto baked = bake_texture(pair.source.view(), pair.target.view(), pair.map, {.size = 24});
+  ASSERT_TRUE(baked) << baked.error().message;
+  const RasterImage image = image_of(baked->mesh, baked->mesh.materials[0].base_color);
+  for (int y = 0; y < 24; ++y)
+    for (int x = 0; x < 24; ++x)
+      for (int k = 0; k < 3; ++k) EXPECT_NEAR(value(image, x, y)[k], 128 / 255.0, 1.01 / 255);
+}
+
 TEST(Bake, TransparentTexelsDoNotBleed) {
   PlanarPair pair = planar_pair(upright);
   // Green and transparent on the left, red and opaque on the right.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 namespace crosspatch {
@@ -45,6 +46,41 @@ TEST(TexturePyramid, RowsAreWhatSinglePlacesAreInsideAndAcrossBorders) {
         EXPECT_EQ(visited, row.count);
       }
     }
+  }
+}
+
+TEST(TexturePyramid, TexelsOutOfUseRunIntoNoLevel) {
+  // A disc of 9000 on 60000, of a size whose halves are odd; with room for the pyramid or without.
+  const int width = 90, height = 54;
+  std::vector<bool> in_use;
+  RasterImage image{width, height, 3, {}};
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      in_use.push_back(std::hypot(x - 40, y - 25) < 18);
+      image.values.insert(image.values.end(), 3, in_use.back() ? 9000 : 60000);
+    }
+  for (const bool room : {false, true}) {
+    RasterImage given = image;
+    if (room) given.values.reserve(given.values.size() + 1);
+    const TexturePyramid pyramid =
+        make_pyramid(std::move(given), ColorSpace::kLinear, Alpha::kIgnored, in_use);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    int levels = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const Vector2d texel(40.5 + 17 * unit(random), 25.5 + 17 * unit(random));
+      if ((texel - Vector2d(40.5, 25.5)).norm() > 17) continue;
+      const double size = std::exp2(3 * unit(random) + 1);
+      Eigen::Matrix2d step;
+      step << unit(random), unit(random), unit(random), unit(random);
+      const Footprint f = footprint(pyramid, step * size / width);
+      levels = std::max(levels, f.level);
+      const Eigen::Vector2f uv(static_cast<float>(texel[0]) / width,
+                               static_cast<float>(texel[1]) / height);
+      // Weights of single precision, of up to 64 taps.
+      EXPECT_NEAR(sample_four(pyramid, {}, uv, f)[0], 9000, 0.1) << i << ", level " << f.level;
+    }
+    EXPECT_GE(levels, 2);
   }
 }
 
