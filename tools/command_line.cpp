@@ -304,9 +304,8 @@ std::string contradiction(const TransferArguments& a) {
       return fmt::format("{}: only a .glb or .gltf can hold it, not '{}'", name, a.output);
   if (a.image_format == ImageFormat::kExr && *format != MeshFormat::kObj)
     return fmt::format(
-        "--image exr: '{}' cannot refer to EXR images (glTF knows PNG and JPEG, PLY none): write "
-        "an "
-        ".obj",
+        "--image exr: '{}' cannot refer to EXR images (glTF knows PNG and JPEG, PLY none): "
+        "write an .obj",
         a.output);
   if (a.round_trip && a.mode != TransferMode::kBake) return "--round-trip: it needs --mode bake";
   if (a.round_trip && a.image_format == ImageFormat::kExr)

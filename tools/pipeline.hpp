@@ -47,7 +47,8 @@ Result<Matching> paper_matching(const PairRun& run, Progress& progress);
 Result<Matching> judged_matching(const PairRun& run, Progress& progress);
 
 /// A map that was found is *sure* from this margin of the finals on, if 99 % of it stay below
-/// kSafeEnergy.
+/// kSafeEnergy. Chosen on FAUST, TOSCA, SMAL and SHREC'07, where 140 of 192 pairs are sure and the
+/// mean error of 138 of them is below 10 % of the square root of the area; see docs/benchmarks.md.
 constexpr double kSafeMargin = 0.13;
 
 /// Energy that 99 % of a sure map stay below, a stretch of ten: beyond it one surface has parts

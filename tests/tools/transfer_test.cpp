@@ -71,8 +71,7 @@ TEST_F(PairOfSurfaces, TransferOptionsThatContradictAreRefused) {
            {"a.fbx", "--output: 'out/a.fbx' is no .glb, .gltf, .obj or .ply"},
            {"a.glb --image exr",
             "--image exr: 'out/a.glb' cannot refer to EXR images (glTF knows PNG and JPEG, PLY "
-            "none): "
-            "write an .obj"},
+            "none): write an .obj"},
            {"a.glb --image jpeg --bits 16", "--bits 16: a JPEG has 8"},
            {"a.obj --image exr --round-trip", "--round-trip: it reads PNG and JPEG, not EXR"},
            {"a.glb -q -v", "--quiet and --verbose contradict each other"},
