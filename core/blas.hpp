@@ -11,6 +11,9 @@ class SingleThreadedBlas {
   ~SingleThreadedBlas();
   SingleThreadedBlas(const SingleThreadedBlas&) = delete;
   SingleThreadedBlas& operator=(const SingleThreadedBlas&) = delete;
+
+ private:
+  int levels_before_ = -1;  ///< of parallel regions of OpenMP; -1 without it
 };
 
 }  // namespace crosspatch
