@@ -40,20 +40,39 @@ SingularDerivatives both_ways_derivatives(double s1, double s2) {
           ((1 + p) * q.twist + q.energy) / 2 - 2};
 }
 
-/// J = U diag(s1, s2) V^T for det J >= 0, in closed form: U and V are rotations, s1 >= s2 >= 0.
+/// J = U diag(s1, s2) V^T for det J >= 0, s1 >= s2 >= 0, by J's parts along a rotation and a
+/// reflection, without the angles of U and V.
 struct Svd2 {
   explicit Svd2(const Eigen::Matrix2d& J) {
     const double sum = (J(0, 0) + J(1, 1)) / 2, difference = (J(0, 0) - J(1, 1)) / 2;
     const double shear = (J(1, 0) + J(0, 1)) / 2, spin = (J(1, 0) - J(0, 1)) / 2;
-    s1 = std::hypot(sum, spin) + std::hypot(difference, shear);
+    const double turning = std::sqrt(sum * sum + spin * spin);
+    const double mirroring = std::sqrt(difference * difference + shear * shear);
+    s1 = turning + mirroring;
     s2 = s1 > 0 ? std::max(0.0, J.determinant()) / s1 : 0;
-    const double twice = std::atan2(shear, difference), turn = std::atan2(spin, sum);
-    U = Eigen::Rotation2Dd((twice + turn) / 2);
-    V = Eigen::Rotation2Dd((twice - turn) / 2);
+    const Vector2d r = turning > 0 ? Vector2d(sum / turning, spin / turning) : Vector2d::UnitX();
+    const Vector2d m =
+        mirroring > 0 ? Vector2d(difference / mirroring, shear / mirroring) : Vector2d::UnitX();
+    rotation << r[0], -r[1], r[1], r[0];
+    reflection << m[0], m[1], m[1], -m[0];
+    turned << -r[1], -r[0], r[0], -r[1];
+    turned_reflection << -m[1], m[0], m[0], m[1];
   }
-  Eigen::Matrix2d U, V;
   double s1, s2;
+  Eigen::Matrix2d rotation;           ///< U V^T
+  Eigen::Matrix2d reflection;         ///< U diag(1, -1) V^T
+  Eigen::Matrix2d turned;             ///< U [0 -1; 1 0] V^T
+  Eigen::Matrix2d turned_reflection;  ///< U [0 1; 1 0] V^T
 };
+
+/// S without its negative eigenvalues.
+Eigen::Matrix2d positive_part(const Eigen::Matrix2d& S) {
+  if (S(0, 0) >= 0 && S(1, 1) >= 0 && S.determinant() >= 0) return S;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen;
+  eigen.computeDirect(S);
+  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() *
+         eigen.eigenvectors().transpose();
+}
 
 /// What kNearlyConformal adds for a scale of areas exp(L), with its derivatives in L.
 struct ScalePenalty {
@@ -101,27 +120,20 @@ double distortion(Distortion distortion,
 IsotropicHessian isotropic_hessian(const Eigen::Matrix2d& J, Distortion distortion) {
   constexpr double kTiny = 1e-150;
   const Svd2 svd(J);
-  const Eigen::Matrix2d &U = svd.U, &V = svd.V;
   const double s1 = std::max(svd.s1, kTiny), s2 = std::max(svd.s2, kTiny);
   const SingularDerivatives d = distortion == Distortion::kBothWays ? both_ways_derivatives(s1, s2)
                                 : distortion == Distortion::kSymmetricDirichlet
                                     ? symmetric_dirichlet_derivatives(s1, s2)
                                     : nearly_conformal_derivatives(s1, s2);
-  Eigen::Matrix<double, 4, 2> D;
-  D << vec(U.col(0) * V.col(0).transpose()), vec(U.col(1) * V.col(1).transpose());
-  const Eigen::Vector4d a = vec(U.col(0) * V.col(1).transpose()),
-                        b = vec(U.col(1) * V.col(0).transpose());
-  const Eigen::Vector4d flip = (a + b) / std::sqrt(2.0), twist = (b - a) / std::sqrt(2.0);
+  Eigen::Matrix<double, 4, 2> D;  // the Jacobian's derivatives in the singular values
+  D << vec((svd.rotation + svd.reflection) / 2), vec((svd.rotation - svd.reflection) / 2);
+  const Eigen::Vector4d flip = vec(svd.turned_reflection) / std::sqrt(2.0),
+                        twist = vec(svd.turned) / std::sqrt(2.0);
   Eigen::Matrix2d S;
   S << d.d11, d.d12, d.d12, d.d22;
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen;
-  eigen.computeDirect(S);
-  const Eigen::Matrix2d positive = eigen.eigenvectors() *
-                                   eigen.eigenvalues().cwiseMax(0).asDiagonal() *
-                                   eigen.eigenvectors().transpose();
   return {d.energy,
           D * Vector2d(d.d1, d.d2),
-          D * positive * D.transpose() + std::max(0.0, d.flip) * flip * flip.transpose() +
+          D * positive_part(S) * D.transpose() + std::max(0.0, d.flip) * flip * flip.transpose() +
               std::max(0.0, d.twist) * twist * twist.transpose()};
 }
 
