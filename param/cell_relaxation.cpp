@@ -10,6 +10,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -30,15 +31,20 @@ struct Energy {
   double sum = 0, weight = 0;
 };
 
-using Polygon = std::vector<Vector3d>;  // barycentric in the moving face
+/// A triangle clipped by three lines, barycentric in the moving face.
+struct Cell {
+  static constexpr int kMost = 9;  ///< six, but for rounding
+  std::array<Vector3d, kMost> corner;
+  int size = 0;
+
+  void add(const Vector3d& p) { corner[idx(size++)] = p; }
+};
 
 /// Space that is used again and again; one a thread.
 struct Scratch {
   std::vector<int> seen;  ///< per face of the other mesh: number of the last visit
   int visit = 0;
   std::vector<int> waiting, met;  ///< faces of the other mesh: to be looked at, and under cells
-  Polygon polygon, clipped;
-  std::vector<Vector2d> on_mesh, on_other;
   std::vector<std::pair<int, int>> ring;
 };
 
@@ -77,6 +83,7 @@ class CellRelaxation {
   /// Tries every vertex near which something has moved since its last try. Returns by how much
   /// their energies fall.
   double run(int& now, Times& moved, const Times& others_moved) {
+    find_sides();
     for (int v = 0; v < mesh_.vertex_count(); ++v)
       hint_[idx(v)] = lift_.locate(X_.row(v).transpose(), hint_[idx(v)]);
     constexpr std::size_t kGrain = 8;
@@ -111,6 +118,17 @@ class CellRelaxation {
       flat[idx(f)] << 0, length, v.dot(u) / length, 0, 0, u.cross(v).norm() / length;
     }
     return flat;
+  }
+
+  /// Of every face of the other mesh: the normals of the planes through its edges and the origin.
+  void find_sides() {
+    sides_.resize(idx(other_.face_count()));
+    tbb::parallel_for(0, other_.face_count(), [&](int g) {
+      for (int m = 0; m < 3; ++m) {
+        const Vector3d a = Y_.row(other_.F(g, (m + 1) % 3)), b = Y_.row(other_.F(g, (m + 2) % 3));
+        sides_[idx(g)].row(m) = a.cross(b - a).transpose();
+      }
+    });
   }
 
   double move(int v, const Times& moved, const Times& others_moved, Scratch& scratch) {
@@ -251,16 +269,17 @@ class CellRelaxation {
     for (std::size_t i = 0; i < scratch.waiting.size(); ++i) {
       const int g = scratch.waiting[i];
       Eigen::Matrix3d values;  // row m: v_m at the corners
-      for (int m = 0; m < 3; ++m) {
-        const Vector3d a = Y_.row(other_.F(g, (m + 1) % 3)), b = Y_.row(other_.F(g, (m + 2) % 3));
-        const Vector3d normal = a.cross(b - a);
-        for (int k = 0; k < 3; ++k) values(m, k) = normal.dot(corners.col(k) - a);
-      }
-      const double share = clip(values, scratch);
+      for (int m = 0; m < 3; ++m)
+        values.row(m) =
+            sides_[idx(g)].row(m) *
+            (corners.colwise() - Vector3d(Y_.row(other_.F(g, (m + 1) % 3)).transpose()));
+      if ((values.rowwise().maxCoeff().array() <= 0).any()) continue;
+      const Cell cell = clip(values);
+      const double share = area_share(cell);
       if (!(share > 0)) continue;
       covered += share;
       scratch.met.push_back(g);
-      add_cell(f, g, values, scratch, energy);
+      add_cell(f, g, values, cell, energy);
       if (!(energy.sum < bound)) return;
       for (int m = 0; m < 3; ++m)
         if (values.row(m).minCoeff() < 0) {
@@ -272,42 +291,49 @@ class CellRelaxation {
     if (std::abs(covered - 1) > kMissing) energy.sum = kInfinity;
   }
 
-  /// Clips the face by the three values (Sutherland & Hodgman 1974); returns the share of its area.
-  static double clip(const Eigen::Matrix3d& values, Scratch& scratch) {
-    Polygon &polygon = scratch.polygon, &clipped = scratch.clipped;
-    polygon = {Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ()};
+  /// Clips the face by the three values (Sutherland & Hodgman 1974).
+  static Cell clip(const Eigen::Matrix3d& values) {
+    Cell cell;
+    for (int k = 0; k < 3; ++k) cell.add(Vector3d::Unit(k));
     for (int m = 0; m < 3; ++m) {
-      const Eigen::RowVector3d value = values.row(m);
-      if (value.minCoeff() >= 0) continue;
-      clipped.clear();
-      for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const Vector3d &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
-        const double a = value * p, b = value * q;
-        if (a > 0) clipped.push_back(p);
-        if ((a > 0) != (b > 0)) clipped.push_back(p + (q - p) * (a / (a - b)));
+      if (values.row(m).minCoeff() >= 0) continue;
+      const Cell uncut = cell;
+      cell.size = 0;
+      std::array<double, Cell::kMost> value;
+      for (int i = 0; i < uncut.size; ++i) value[idx(i)] = values.row(m) * uncut.corner[idx(i)];
+      for (int i = 0; i < uncut.size; ++i) {
+        const int next = i + 1 < uncut.size ? i + 1 : 0;
+        const Vector3d &p = uncut.corner[idx(i)], &q = uncut.corner[idx(next)];
+        const double a = value[idx(i)], b = value[idx(next)];
+        if (a > 0) cell.add(p);
+        if ((a > 0) != (b > 0)) cell.add(p + (q - p) * (a / (a - b)));
       }
-      polygon.swap(clipped);
-      if (polygon.size() < 3) return 0;
+      if (cell.size < 3) return {};
     }
+    return cell;
+  }
+
+  /// Of the face's area.
+  static double area_share(const Cell& cell) {
     double share = 0;
-    for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
-      share += polygon[0].dot(polygon[i].cross(polygon[i + 1]));
+    for (int i = 1; i + 1 < cell.size; ++i)
+      share += cell.corner[0].dot(cell.corner[idx(i)].cross(cell.corner[idx(i + 1)]));
     return share;
   }
 
   void add_cell(
-      int f, int g, const Eigen::Matrix3d& values, Scratch& scratch, Energy& energy) const {
-    scratch.on_mesh.clear();
-    scratch.on_other.clear();
-    for (const Vector3d& b : scratch.polygon) {
-      scratch.on_mesh.emplace_back(flat_[idx(f)] * b);
+      int f, int g, const Eigen::Matrix3d& values, const Cell& cell, Energy& energy) const {
+    std::array<Vector2d, Cell::kMost> on_mesh, on_other;
+    for (int i = 0; i < cell.size; ++i) {
+      const Vector3d& b = cell.corner[idx(i)];
+      on_mesh[idx(i)] = flat_[idx(f)] * b;
       const Vector3d c = (values * b).cwiseMax(0);
-      scratch.on_other.emplace_back(other_flat_[idx(g)] * (c / c.sum()));
+      on_other[idx(i)] = other_flat_[idx(g)] * (c / c.sum());
     }
-    for (std::size_t i = 1; i + 1 < scratch.polygon.size(); ++i) {
+    for (int i = 1; i + 1 < cell.size; ++i) {
       Eigen::Matrix2d E, G;
-      E << scratch.on_mesh[i] - scratch.on_mesh[0], scratch.on_mesh[i + 1] - scratch.on_mesh[0];
-      G << scratch.on_other[i] - scratch.on_other[0], scratch.on_other[i + 1] - scratch.on_other[0];
+      E << on_mesh[idx(i)] - on_mesh[0], on_mesh[idx(i + 1)] - on_mesh[0];
+      G << on_other[idx(i)] - on_other[0], on_other[idx(i + 1)] - on_other[0];
       constexpr double kNothing = 1e-16;  // as measure_map leaves out
       const double a = std::max(E.determinant(), kNothing), b = std::max(G.determinant(), kNothing);
       if (a == kNothing && b == kNothing) continue;
@@ -326,8 +352,9 @@ class CellRelaxation {
   MatrixX3d& X_;
   MeshLift lift_;
   std::vector<Corners> flat_, other_flat_;
-  std::vector<int> hint_;   ///< per vertex: face of the other mesh that holds it
-  std::vector<int> tried_;  ///< per vertex: when it was last tried
+  std::vector<Eigen::Matrix3d> sides_;  ///< per face of the other mesh, see find_sides
+  std::vector<int> hint_;               ///< per vertex: face of the other mesh that holds it
+  std::vector<int> tried_;              ///< per vertex: when it was last tried
   std::vector<std::vector<int>> colours_;
   tbb::enumerable_thread_specific<Scratch> scratch_;
 };
