@@ -18,8 +18,7 @@
 #include <numeric>
 #include <span>
 
-#include "core/blas.hpp"
-#include "param/newton_solver.hpp"
+#include "param/newton_system.hpp"
 #include "param/sphere_orientation.hpp"
 #include "param/vertex_colours.hpp"
 
@@ -28,8 +27,6 @@ namespace {
 
 using std::size_t;
 using Matrix32 = Eigen::Matrix<double, 3, 2>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 size_t at(int i) {
   return static_cast<size_t>(i);
@@ -37,11 +34,15 @@ size_t at(int i) {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Hessian and gradient of one face in the six tangent coordinates of its corners.
-struct FaceSystem {
-  Matrix6 H;
-  Vector6 g;
-};
+/// The coordinates of the vertices that move, see NewtonSystem.
+std::vector<int> number_unknowns(const SphereProblem& problem) {
+  std::vector<int> unknown(problem.fixed.size(), -1);
+  for (const int v : problem.F.reshaped()) unknown[at(v)] = 0;
+  int n = 0;
+  for (size_t v = 0; v < unknown.size(); ++v)
+    unknown[v] = unknown[v] == 0 && !problem.fixed[v] ? 2 * n++ : -1;
+  return unknown;
+}
 
 class Optimizer {
  public:
@@ -50,11 +51,16 @@ class Optimizer {
             const SphereOptimizerOptions& options,
             MatrixX3d& X,
             std::vector<int>& hint)
-      : problem_(problem), lift_(lift), options_(options), X_(X), hint_(hint) {
+      : problem_(problem),
+        lift_(lift),
+        options_(options),
+        X_(X),
+        hint_(hint),
+        system_(problem.F, number_unknowns(problem)) {
     Y_.resize(X.rows(), 3);
     reference_ = problem.reference_orientation;
     total_area_ = problem.rest_area.sum();
-    build_pattern();
+    collect_stars();
     vertex_area_ = Eigen::VectorXd::Zero(X.rows());
     for (int f = 0; f < problem.F.rows(); ++f)
       for (int k = 0; k < 3; ++k) vertex_area_[problem.F(f, k)] += problem.rest_area[f] / 3;
@@ -67,25 +73,35 @@ class Optimizer {
     report.energy_before = energy;
     // Common steps move whole limbs; where kinks of the lift or squeezed faces stop them, single
     // vertices still get on.
-    int failures = 0;
-    constexpr int kMostFailures = 4, kSweeps = 1;
+    constexpr int kLongestPause = 3;
+    int pause = 0, wait = 0;  // iterations without a common step: after the next one, and left
     for (; report.iterations < options_.max_iterations; ++report.iterations) {
       if (options_.distortion == Distortion::kNearlyConformal) {
         refer_to_chords();
         energy = evaluate(X_, hint_, Y_);
       }
       const double before = energy;
-      if (failures < kMostFailures) {
+      const bool together = wait == 0;
+      double lower = energy;
+      if (together) {
         assemble();
-        const double lower = solve() ? line_search(energy) : energy;
-        failures = lower < energy ? 0 : failures + 1;
+        if (system_.solve(damping_, step_)) lower = line_search(energy);
+        if (lower < energy) std::fill(moved_.begin(), moved_.end(), ++now_);
       }
-      for (int i = 0; i < kSweeps; ++i) sweep();
+      sweep();
       energy = evaluate(X_, hint_, Y_);
-      if (before - energy < options_.relative_decrease * std::abs(before)) {
+      if (together) {
+        pause = before - lower < lower - energy ? std::min(2 * pause + 1, kLongestPause) : 0;
+        wait = pause;
+      } else {
+        --wait;
+      }
+      if (before - energy >= options_.relative_decrease * std::abs(before)) continue;
+      if (together) {
         ++report.iterations;
         break;
       }
+      wait = 0;
     }
     report.energy_after = energy;
     return report;
@@ -107,9 +123,6 @@ class Optimizer {
   /// lifted points.
   double evaluate(const MatrixX3d& X, std::vector<int>& hint, MatrixX3d& Y) const {
     const int faces = static_cast<int>(problem_.F.rows());
-    for (int f = 0; f < faces; ++f)
-      if (!(sphere_orientation(corner(X, f, 0), corner(X, f, 1), corner(X, f, 2)) > 0))
-        return kInfinity;
     tbb::parallel_for(0, static_cast<int>(X.rows()), [&](int v) {
       if (active_[at(v)]) Y.row(v) = lift_.point(X.row(v).transpose(), hint[at(v)]).transpose();
     });
@@ -119,11 +132,12 @@ class Optimizer {
                               {corner(X, f, 0), corner(X, f, 1), corner(X, f, 2)},
                               {corner(Y, f, 0), corner(Y, f, 1), corner(Y, f, 2)});
     });
-    double fields = 0;
-    if (problem_.fields != nullptr)
-      for (int v = 0; v < X.rows(); ++v)
-        if (unknown_[at(v)] >= 0) fields += field_energy(v, X.row(v).transpose(), hint[at(v)]);
-    return (energy.sum() + fields) / total_area_;
+    if (problem_.fields == nullptr) return energy.sum() / total_area_;
+    Eigen::VectorXd fields = Eigen::VectorXd::Zero(X.rows());
+    tbb::parallel_for(0, static_cast<int>(X.rows()), [&](int v) {
+      if (system_.unknown(v) >= 0) fields[v] = field_energy(v, X.row(v).transpose(), hint[at(v)]);
+    });
+    return (energy.sum() + fields.sum()) / total_area_;
   }
 
   /// Disagreement of the fields at one vertex, weighted.
@@ -155,34 +169,47 @@ class Optimizer {
     return problem_.rest_area[f] * (e + options_.barrier * reference_[f] / det);
   }
 
-  /// One Newton step with a line search for each free vertex in turn, the others held. Vertices of
-  /// one colour have no face in common and step at the same time.
+  /// One Newton step with a line search for each free vertex in turn, the others held, but for
+  /// those around which nothing has moved since their last. Vertices of one colour have no face in
+  /// common and step at the same time.
   void sweep() {
     constexpr size_t kGrain = 32;
-    for (const std::vector<int>& colour : colours_)
+    for (const std::vector<int>& colour : colours_) {
+      ++now_;
       tbb::parallel_for(tbb::blocked_range<size_t>(0, colour.size(), kGrain),
                         [&](const tbb::blocked_range<size_t>& range) {
-                          for (size_t i = range.begin(); i < range.end(); ++i)
-                            step_alone(colour[i]);
+                          for (size_t i = range.begin(); i < range.end(); ++i) {
+                            const int v = colour[i];
+                            if (!has_changed(v)) continue;
+                            tried_[at(v)] = now_;
+                            if (step_alone(v)) moved_[at(v)] = now_;
+                          }
                         });
+    }
   }
 
-  void step_alone(int v) {
+  [[nodiscard]] bool has_changed(int v) const {
+    for (const int f : faces_of(v))
+      for (int k = 0; k < 3; ++k)
+        if (moved_[at(problem_.F(f, k))] >= tried_[at(v)]) return true;
+    return false;
+  }
+
+  /// Whether it gains what is worth mentioning.
+  bool step_alone(int v) {
     const Vector3d x = X_.row(v).transpose();
     frame_[at(v)] = lift_.frame(x, hint_[at(v)]);
     Eigen::Matrix2d H = Eigen::Matrix2d::Zero();
     Vector2d g = Vector2d::Zero();
     for (int f : faces_of(v)) {
       const FaceModel m = face_model(f);
-      const int k = corner_of(f, v);
-      const Rates J = rates(m, f, k);
-      const Vector2d barrier = barrier_rate(m, f, k);
-      H += m.weight * J.transpose() * m.energy.H * J + 2 * barrier * barrier.transpose();
-      g += m.weight * J.transpose() * m.energy.g + 2 * m.barrier * barrier;
+      const CornerRates c = corner_rates(m, f, corner_of(f, v));
+      H += hessian_block(m, c, c);
+      g += gradient_part(m, c);
     }
     add_fields(v, H, g);
     const Vector2d step = -H.ldlt().solve(g);
-    if (!step.allFinite()) return;
+    if (!step.allFinite()) return false;
     const double energy = star_energy(v, x, Y_.row(v).transpose(), hint_[at(v)]);
     constexpr int kHalvings = 5;
     double t = 1;
@@ -190,12 +217,15 @@ class Optimizer {
       int face = hint_[at(v)];
       const Vector3d moved = lift_.walk(x, face, t * frame_[at(v)].on_surface * step);
       const Vector3d y = lift_.point(moved, face);
-      if (!(star_energy(v, moved, y, face) < energy)) continue;
+      const double lower = star_energy(v, moved, y, face);
+      if (!(lower < energy)) continue;
       X_.row(v) = moved.transpose();
       Y_.row(v) = y.transpose();
       hint_[at(v)] = face;
-      return;
+      constexpr double kWorthwhile = 5e-4;
+      return energy - lower > kWorthwhile * energy;
     }
+    return false;
   }
 
   [[nodiscard]] double star_energy(int v, const Vector3d& x, const Vector3d& y, int face) const {
@@ -228,7 +258,12 @@ class Optimizer {
     double det;      ///< orientation on the sphere
     double barrier;  ///< residual whose square is the weighted barrier
   };
-  using Rates = Eigen::Matrix<double, 4, 2>;
+  /// How a face follows one corner's coordinates.
+  struct CornerRates {
+    Eigen::RowVector2d by_place;  ///< column j of the Jacobian moves by by_place[j] times ...
+    Eigen::Matrix2d place;        ///< ... how the corner moves in the face's plane
+    Vector2d barrier;             ///< derivatives of the barrier's residual
+  };
 
   [[nodiscard]] FaceModel face_model(int f) const {
     const Vector3d y0 = corner(Y_, f, 0), u = corner(Y_, f, 1) - y0, v = corner(Y_, f, 2) - y0;
@@ -244,38 +279,44 @@ class Optimizer {
     return m;
   }
 
-  /// Derivatives of the Jacobian's entries in the coordinates of corner k.
-  [[nodiscard]] Rates rates(const FaceModel& m, int f, int k) const {
+  [[nodiscard]] CornerRates corner_rates(const FaceModel& m, int f, int k) const {
     const Eigen::Matrix2d& D = problem_.rest_inverse[at(f)];
-    // How the Jacobian follows the corner's place in the face's plane.
-    const Eigen::RowVector2d s = k == 0 ? Eigen::RowVector2d(-D.colwise().sum()) : D.row(k - 1);
-    const Eigen::Matrix2d M = m.plane * frame_[at(problem_.F(f, k))].on_surface;
-    Rates r;
-    r << s[0] * M, s[1] * M;
-    return r;
+    const Lift::Frame& frame = frame_[at(problem_.F(f, k))];
+    const Vector3d normal = corner(X_, f, (k + 1) % 3).cross(corner(X_, f, (k + 2) % 3));
+    return {k == 0 ? Eigen::RowVector2d(-D.colwise().sum()) : Eigen::RowVector2d(D.row(k - 1)),
+            m.plane * frame.on_surface,
+            -0.5 * m.barrier / m.det * (frame.on_sphere.transpose() * normal)};
   }
 
-  /// Derivatives of the barrier's residual in the coordinates of corner k.
-  [[nodiscard]] Vector2d barrier_rate(const FaceModel& m, int f, int k) const {
-    const Vector3d normal = corner(X_, f, (k + 1) % 3).cross(corner(X_, f, (k + 2) % 3));
-    return -0.5 * m.barrier / m.det * (frame_[at(problem_.F(f, k))].on_sphere.transpose() * normal);
+  /// The block of a face's Hessian in the coordinates of two of its corners (rows: a, columns: b).
+  [[nodiscard]] static Eigen::Matrix2d hessian_block(const FaceModel& m,
+                                                     const CornerRates& a,
+                                                     const CornerRates& b) {
+    Eigen::Matrix2d H = Eigen::Matrix2d::Zero();
+    for (int i = 0; i < 2; ++i)
+      for (int j = 0; j < 2; ++j)
+        H += a.by_place[i] * b.by_place[j] * m.energy.H.block<2, 2>(2 * i, 2 * j);
+    return m.weight * (a.place.transpose() * H * b.place) + 2 * a.barrier * b.barrier.transpose();
+  }
+
+  [[nodiscard]] static Vector2d gradient_part(const FaceModel& m, const CornerRates& c) {
+    const Vector2d g = c.by_place[0] * m.energy.g.head<2>() + c.by_place[1] * m.energy.g.tail<2>();
+    return m.weight * (c.place.transpose() * g) + 2 * m.barrier * c.barrier;
   }
 
   [[nodiscard]] FaceSystem face_system(int f) const {
     const FaceModel m = face_model(f);
-    Eigen::Matrix<double, 4, 6> G;
-    Vector6 barrier;
-    for (int k = 0; k < 3; ++k) {
-      G.middleCols<2>(2 * k) = rates(m, f, k);
-      barrier.segment<2>(2 * k) = barrier_rate(m, f, k);
+    const std::array<CornerRates, 3> c{
+        corner_rates(m, f, 0), corner_rates(m, f, 1), corner_rates(m, f, 2)};
+    FaceSystem s;
+    for (size_t a = 0; a < 3; ++a) {
+      s.g[a] = gradient_part(m, c[a]);
+      for (size_t b = 0; b <= a; ++b) s.H[FaceSystem::block(a, b)] = hessian_block(m, c[a], c[b]);
     }
-    return {m.weight * G.transpose() * m.energy.H * G + 2 * barrier * barrier.transpose(),
-            m.weight * G.transpose() * m.energy.g + 2 * m.barrier * barrier};
+    return s;
   }
 
-  /// Unknowns are numbered over the free vertices; the lower triangle's sparsity is fixed by the
-  /// faces.
-  void build_pattern() {
+  void collect_stars() {
     const int vertices = static_cast<int>(X_.rows());
     active_.assign(at(vertices), false);
     for (int f = 0; f < problem_.F.rows(); ++f)
@@ -287,28 +328,11 @@ class Optimizer {
     std::vector<int> fill(faces_begin_.begin(), faces_begin_.end() - 1);
     for (int f = 0; f < problem_.F.rows(); ++f)
       for (int k = 0; k < 3; ++k) faces_[at(fill[at(problem_.F(f, k))]++)] = f;
-    unknown_.assign(at(vertices), -1);
-    int n = 0;
-    for (int v = 0; v < vertices; ++v)
-      if (active_[at(v)] && !problem_.fixed[at(v)]) unknown_[at(v)] = 2 * n++;
     std::vector<bool> is_free(at(vertices));
-    for (int v = 0; v < vertices; ++v) is_free[at(v)] = unknown_[at(v)] >= 0;
+    for (int v = 0; v < vertices; ++v) is_free[at(v)] = system_.unknown(v) >= 0;
     colours_ = vertex_colours(problem_.F, is_free);
-    std::vector<Eigen::Triplet<double>> entries;
-    for (int f = 0; f < problem_.F.rows(); ++f)
-      for (int a = 0; a < 3; ++a)
-        for (int b = 0; b < 3; ++b) {
-          const int i = unknown_[at(problem_.F(f, a))], j = unknown_[at(problem_.F(f, b))];
-          if (i < 0 || j < 0 || i < j) continue;
-          for (int p = 0; p < 2; ++p)
-            for (int q = 0; q < 2; ++q)
-              if (i + p >= j + q) entries.emplace_back(i + p, j + q, 0.0);
-        }
-    H_.resize(2 * n, 2 * n);
-    H_.setFromTriplets(entries.begin(), entries.end());
-    H_.makeCompressed();
-    solver_.analyze(H_);
-    gradient_.resize(2 * n);
+    moved_.assign(at(vertices), 0);
+    tried_.assign(at(vertices), 0);
     frame_.resize(at(vertices));
     systems_.resize(at(static_cast<int>(problem_.F.rows())));
   }
@@ -325,43 +349,18 @@ class Optimizer {
                                {corner(X_, f, 0), corner(X_, f, 1), corner(X_, f, 2)},
                                {corner(Y_, f, 0), corner(Y_, f, 1), corner(Y_, f, 2)});
     });
-    std::fill(H_.valuePtr(), H_.valuePtr() + H_.nonZeros(), 0.0);
-    gradient_.setZero();
-    for (int f = 0; f < problem_.F.rows(); ++f) {
-      const FaceSystem& s = systems_[at(f)];
-      for (int a = 0; a < 3; ++a) {
-        const int i = unknown_[at(problem_.F(f, a))];
-        if (i < 0) continue;
-        gradient_.segment<2>(i) += s.g.segment<2>(2 * a);
-        for (int b = 0; b < 3; ++b) {
-          const int j = unknown_[at(problem_.F(f, b))];
-          if (j < 0 || i < j) continue;
-          for (int p = 0; p < 2; ++p)
-            for (int q = 0; q < 2; ++q)
-              if (i + p >= j + q) H_.coeffRef(i + p, j + q) += s.H(2 * a + p, 2 * b + q);
-        }
-      }
-    }
+    system_.assemble(systems_);
     if (problem_.fields != nullptr) assemble_fields();
   }
 
   void assemble_fields() {
     for (int v = 0; v < X_.rows(); ++v) {
-      const int i = unknown_[at(v)];
-      if (i < 0) continue;
+      if (system_.unknown(v) < 0) continue;
       Eigen::Matrix2d H = Eigen::Matrix2d::Zero();
       Vector2d g = Vector2d::Zero();
       add_fields(v, H, g);
-      gradient_.segment<2>(i) += g;
-      for (int p = 0; p < 2; ++p)
-        for (int q = 0; q <= p; ++q) H_.coeffRef(i + p, i + q) += H(p, q);
+      system_.add(v, H, g);
     }
-  }
-
-  bool solve() {
-    // Rotations of the sphere and slides of symmetric surfaces leave some energies unchanged.
-    for (int i = 0; i < H_.cols(); ++i) H_.coeffRef(i, i) += damping_;
-    return solver_.solve(H_, -gradient_, step_);
   }
 
   /// The state after `t` times the step. Vertices of faces that would become much worse go a
@@ -374,14 +373,14 @@ class Optimizer {
     std::vector<double> part(at(static_cast<int>(X_.rows())), t);
     std::vector<int> moving, touched(at(faces));  // vertices that move, and the faces around them
     for (int v = 0; v < X_.rows(); ++v)
-      if (unknown_[at(v)] >= 0) moving.push_back(v);
+      if (system_.unknown(v) >= 0) moving.push_back(v);
     std::iota(touched.begin(), touched.end(), 0);
     std::vector<char> worse(at(faces), 0), marked(at(faces), 0), chosen(part.size(), 0);
     for (int round = 0; round < kRounds && !moving.empty(); ++round) {
       tbb::parallel_for(size_t{0}, moving.size(), [&](size_t i) {
         const int v = moving[i];
         const Vector3d d =
-            part[at(v)] * frame_[at(v)].on_surface * step_.segment<2>(unknown_[at(v)]);
+            part[at(v)] * frame_[at(v)].on_surface * step_.segment<2>(system_.unknown(v));
         int face = hint_[at(v)];
         X.row(v) = lift_.walk(X_.row(v).transpose(), face, d).transpose();
         Y.row(v) = lift_.point(X.row(v).transpose(), face).transpose();
@@ -397,7 +396,7 @@ class Optimizer {
       for (const int f : touched)
         if (worse[at(f)] != 0)
           for (int k = 0; k < 3; ++k)
-            if (const int v = problem_.F(f, k); unknown_[at(v)] >= 0 && chosen[at(v)] == 0) {
+            if (const int v = problem_.F(f, k); system_.unknown(v) >= 0 && chosen[at(v)] == 0) {
               chosen[at(v)] = 1;
               moving.push_back(v);
             }
@@ -450,17 +449,18 @@ class Optimizer {
   double total_area_ = 1;
   Eigen::VectorXd vertex_area_;  ///< a third of the faces around each vertex
   std::vector<bool> active_;
-  std::vector<int> faces_begin_, faces_;  ///< faces around each vertex
-  std::vector<int> unknown_;
+  std::vector<int> faces_begin_, faces_;   ///< faces around each vertex
   std::vector<std::vector<int>> colours_;  ///< free vertices
   std::vector<Lift::Frame> frame_;         ///< per vertex
+  int now_ = 0;                            ///< counts common steps and sweeps over one colour
+  std::vector<int> moved_, tried_;  ///< per vertex: when it last moved, and last stepped alone
   std::vector<FaceSystem> systems_;
-  double damping_ = 1e-2;   ///< of the steps; diagonal entries of a good map's Hessian are about 30
+  /// Of the steps. Rotations of the sphere and slides of symmetric surfaces leave some energies
+  /// unchanged.
+  double damping_ = 1e-2;   ///< diagonal entries of a good map's Hessian are about 30
   Eigen::VectorXd energy_;  ///< per face, where the systems were assembled
-  SparseMatrix H_;
-  Eigen::VectorXd gradient_, step_;
-  NewtonSolver solver_;
-  SingleThreadedBlas blas_;
+  Eigen::VectorXd step_;
+  NewtonSystem system_;
 };
 
 }  // namespace

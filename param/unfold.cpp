@@ -8,14 +8,15 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "core/union_find.hpp"
+#include "param/newton_system.hpp"
 #include "param/sphere_orientation.hpp"
 #include "param/untangle.hpp"
 
@@ -41,7 +42,9 @@ class Unfolder {
       : problem_(problem), X_(X), free_(std::move(movable)), faces_(std::move(faces)) {
     F_ = problem.F(faces_, Eigen::all);
     covered_ = covered_area(F_, X);
-    build_pattern();
+    std::vector<int> unknown(problem.fixed.size(), -1);
+    for (size_t i = 0; i < free_.size(); ++i) unknown[at(free_[i])] = 2 * static_cast<int>(i);
+    system_.emplace(F_, std::move(unknown));
   }
 
   /// Returns the number of faces that are left turned.
@@ -74,7 +77,7 @@ class Unfolder {
     double before = energy(X_);
     for (int i = 0; i < kMostIterations; ++i) {
       const double after = step(before);
-      constexpr double kWorthwhile = 1e-2;
+      constexpr double kWorthwhile = 5e-2;
       if (!(after < (1 - kWorthwhile) * before)) break;
       before = after;
     }
@@ -146,60 +149,31 @@ class Unfolder {
     return energies.sum();
   }
 
-  /// Numbers the unknowns; where the entries of every face go in the system's lower triangle.
-  void build_pattern() {
-    std::vector<int> unknown(problem_.fixed.size(), -1);
-    for (size_t i = 0; i < free_.size(); ++i) unknown[at(free_[i])] = 2 * static_cast<int>(i);
-    const int n = 2 * static_cast<int>(free_.size());
-    unknowns_.resize(faces_.size());
-    std::vector<Eigen::Triplet<double>> entries;
-    for (size_t i = 0; i < faces_.size(); ++i)
-      for (int a = 0; a < 6; ++a) {
-        const int u = unknown[at(F_(static_cast<Eigen::Index>(i), a / 2))];
-        unknowns_[i][at(a)] = u < 0 ? -1 : u + a % 2;
-      }
-    for (const auto& u : unknowns_)
-      for (const int i : u)
-        for (const int j : u)
-          if (j >= 0 && i >= j) entries.emplace_back(i, j, 0.0);
-    H_.resize(n, n);
-    H_.setFromTriplets(entries.begin(), entries.end());
-    solver_.analyzePattern(H_);
+  [[nodiscard]] FaceSystem face_system(int f) const {
+    Matrix86 D = Matrix86::Zero();
+    const Residuals r = residuals(X_, f, &D);
+    FaceSystem s;
+    for (int a = 0; a < 3; ++a) {
+      s.g[at(a)] = D.middleCols<2>(2 * a).transpose() * r;
+      for (int b = 0; b <= a; ++b)
+        s.H[FaceSystem::block(at(a), at(b))] =
+            D.middleCols<2>(2 * a).transpose() * D.middleCols<2>(2 * b);
+    }
+    return s;
   }
 
   /// One Gauss-Newton step with backtracking; the new energy, or `before` if no step is lower.
   double step(double before) {
-    struct FaceSystem {
-      Eigen::Matrix<double, 6, 6> H;
-      Eigen::Matrix<double, 6, 1> g;
-    };
     std::vector<FaceSystem> systems(faces_.size());
     tbb::parallel_for(tbb::blocked_range<int>(0, static_cast<int>(faces_.size()), kGrain),
                       [&](const tbb::blocked_range<int>& range) {
-                        for (int i = range.begin(); i < range.end(); ++i) {
-                          Matrix86 D = Matrix86::Zero();
-                          const Residuals r = residuals(X_, faces_[at(i)], &D);
-                          systems[at(i)] = {D.transpose() * D, D.transpose() * r};
-                        }
+                        for (int i = range.begin(); i < range.end(); ++i)
+                          systems[at(i)] = face_system(faces_[at(i)]);
                       });
-    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(H_.rows());
-    std::fill(H_.valuePtr(), H_.valuePtr() + H_.nonZeros(), 0.0);
-    double trace = 0;
-    for (size_t f = 0; f < faces_.size(); ++f)
-      for (int a = 0; a < 6; ++a) {
-        const int i = unknowns_[f][at(a)];
-        if (i < 0) continue;
-        gradient[i] += systems[f].g[a];
-        trace += systems[f].H(a, a);
-        for (int b = 0; b < 6; ++b)
-          if (const int j = unknowns_[f][at(b)]; j >= 0 && i >= j)
-            H_.coeffRef(i, j) += systems[f].H(a, b);
-      }
-    const double damping = 1e-9 * trace / static_cast<double>(H_.rows());
-    for (int i = 0; i < H_.rows(); ++i) H_.coeffRef(i, i) += damping;
-    solver_.factorize(H_);
-    if (solver_.info() != Eigen::Success) return before;
-    const Eigen::VectorXd direction = solver_.solve(-gradient);
+    system_->assemble(systems);
+    constexpr double kDamping = 1e-9;
+    Eigen::VectorXd direction;
+    if (!system_->solve(kDamping * system_->mean_diagonal(), direction)) return before;
     const MatrixX3d start = X_(free_, Eigen::all);
     constexpr int kHalvings = 20;
     double t = 1;
@@ -221,14 +195,12 @@ class Unfolder {
 
   const SphereProblem& problem_;
   MatrixX3d& X_;
-  std::vector<int> free_;                     ///< vertices; vertex i has unknowns 2 i and 2 i + 1
-  std::vector<int> faces_;                    ///< that can move
-  MatrixX3i F_;                               ///< their corners
-  std::vector<std::array<int, 6>> unknowns_;  ///< of their corners' coordinates, -1 where fixed
-  double covered_ = 0;  ///< area they cover on the sphere, signed; steps by 4 pi only
+  std::vector<int> free_;   ///< vertices; vertex i has unknowns 2 i and 2 i + 1
+  std::vector<int> faces_;  ///< that can move
+  MatrixX3i F_;             ///< their corners
+  double covered_ = 0;      ///< area they cover on the sphere, signed; steps by 4 pi only
   double epsilon_ = 1;
-  SparseMatrix H_;
-  Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower> solver_;
+  std::optional<NewtonSystem> system_;
 };
 
 bool turned(const MatrixX3i& F, const MatrixX3d& X, int f) {
