@@ -73,7 +73,7 @@ class Optimizer {
     report.energy_before = energy;
     // Common steps move whole limbs; where kinks of the lift or squeezed faces stop them, single
     // vertices still get on.
-    constexpr int kLongestPause = 3;
+    constexpr int kLongestPause = 15;
     int pause = 0, wait = 0;  // iterations without a common step: after the next one, and left
     for (; report.iterations < options_.max_iterations; ++report.iterations) {
       if (options_.distortion == Distortion::kNearlyConformal) {
