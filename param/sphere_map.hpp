@@ -55,7 +55,8 @@ class SphereMap {
   Status refine();
   /// Lets go of the landmarks that are not pinned and lets the target's vertices move under the
   /// same energy of the inverse map, and then the source's again: each side only sees what happens
-  /// at its own vertices.
+  /// at its own vertices. Triangulations of one surface, whose vertices are those of the other or
+  /// lie on it, come out as exact isometries.
   void settle();
   /// The common subdivision. Vertices of the source that all but meet one of the target are made to
   /// meet it, since no file in single precision holds what lies between; vertices in special
@@ -70,6 +71,9 @@ class SphereMap {
   Status split_back(double growth);
   /// Turns faces back, and where that does not help collapses vertices of the level.
   Status untangle(const SphereProblem& problem);
+  /// Whether there may be an isometry, but for the pull of the barrier and of curvatures that
+  /// differ between two triangulations of one surface.
+  bool is_nearly_isometric();
   /// See overlay().
   void join_close_vertices();
   /// Lets go of the landmarks that only decided the homotopy class. True if there were any.

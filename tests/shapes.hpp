@@ -100,4 +100,26 @@ inline TriangleMesh double_torus() {
   return make_mesh(V, F).value();
 }
 
+/// Every face cut into four at the middles of its sides, which stay where they are: corners keep
+/// their numbers, rows 4 f to 4 f + 3 are the parts of face f, the last the one in its midst.
+inline TriangleMesh refined(const TriangleMesh& mesh) {
+  MatrixX3d V = mesh.V;
+  MatrixX3i F(4 * mesh.face_count(), 3);
+  std::map<std::pair<int, int>, int> middles;
+  const auto middle = [&](int a, int b) {
+    const auto [it, fresh] = middles.try_emplace(std::minmax(a, b), static_cast<int>(V.rows()));
+    if (fresh) {
+      V.conservativeResize(V.rows() + 1, 3);
+      V.row(it->second) = (V.row(a) + V.row(b)) / 2;
+    }
+    return it->second;
+  };
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    const int a = mesh.F(f, 0), b = mesh.F(f, 1), c = mesh.F(f, 2);
+    const int x = middle(a, b), y = middle(b, c), z = middle(c, a);
+    F.middleRows(4 * f, 4) << a, x, z, b, y, x, c, z, y, x, y, z;
+  }
+  return make_mesh(V, F).value();
+}
+
 }  // namespace crosspatch::shapes
