@@ -295,6 +295,20 @@ CLI::App* add_transfer(CLI::App& app, TransferArguments& arguments) {
   return command;
 }
 
+/// The options of transfer, without their dashes, that this mode does not read.
+std::vector<std::string> unread_options(TransferMode mode) {
+  if (mode == TransferMode::kBake) return {"uv-tolerance"};
+  return {"size", "image", "bits", "round-trip"};
+}
+
+/// What is wrong with options that are given, in a configuration or not, and would change nothing.
+std::string unread_option(const CLI::App& command, TransferMode mode) {
+  const char* const other = mode == TransferMode::kBake ? "keep" : "bake";
+  for (const std::string& name : unread_options(mode))
+    if (command.count("--" + name) > 0) return fmt::format("--{}: it needs --mode {}", name, other);
+  return "";
+}
+
 /// What is wrong with options that are each right.
 std::string contradiction(const TransferArguments& a) {
   const std::optional<MeshFormat> format = mesh_format(a.output);
@@ -307,7 +321,6 @@ std::string contradiction(const TransferArguments& a) {
         "--image exr: '{}' cannot refer to EXR images (glTF knows PNG and JPEG, PLY none): "
         "write an .obj",
         a.output);
-  if (a.round_trip && a.mode != TransferMode::kBake) return "--round-trip: it needs --mode bake";
   if (a.round_trip && a.image_format == ImageFormat::kExr)
     return "--round-trip: it reads PNG and JPEG, not EXR";
   if (a.image_format == ImageFormat::kJpeg && a.bits != 8) return "--bits 16: a JPEG has 8";
@@ -411,12 +424,17 @@ std::string version_text() {
 }
 
 /// The options of the command that was given, under its name.
-std::string config_text(const CLI::App& app) {
+std::string config_text(const CLI::App& app, const std::vector<std::string>& unread) {
+  const auto is_read = [&](const std::string& line) {
+    return std::none_of(unread.begin(), unread.end(), [&](const std::string& name) {
+      return line.starts_with(name + '=');
+    });
+  };
   const CLI::App* command = app.get_subcommands().front();
   std::istringstream all(command->config_to_str(true, false));
   std::string text = fmt::format("[{}]\n", command->get_name());
   for (std::string line; std::getline(all, line);)
-    if (!line.ends_with("=\"\"") && !line.ends_with("=[]"))
+    if (!line.ends_with("=\"\"") && !line.ends_with("=[]") && is_read(line))
       text += line + '\n';  // not given, and without a default
   return text;
 }
@@ -475,7 +493,11 @@ tl::expected<Command, CommandLineStop> parse_command_line(int argc, const char* 
     if (quiet_and_verbose(app))
       return tl::unexpected(
           CommandLineStop{ExitCode::kUsage, "--quiet and --verbose contradict each other"});
-    if (print_config) return tl::unexpected(CommandLineStop{ExitCode::kDone, config_text(app)});
+    if (print_config) {
+      const auto unread =
+          transfer_command->parsed() ? unread_options(transfer.mode) : std::vector<std::string>{};
+      return tl::unexpected(CommandLineStop{ExitCode::kDone, config_text(app, unread)});
+    }
   } catch (const CLI::RequiredError& error) {
     // The library tells of the missing subcommand before it tells of a word it does not know.
     const bool unknown = app.get_subcommands().empty() && argc > 1;
@@ -509,6 +531,8 @@ tl::expected<Command, CommandLineStop> parse_command_line(int argc, const char* 
     return match;
   }
   if (transfer_command->parsed()) {
+    if (const std::string wrong = unread_option(*transfer_command, transfer.mode); !wrong.empty())
+      return tl::unexpected(CommandLineStop{ExitCode::kUsage, wrong});
     if (const std::string wrong = contradiction(transfer); !wrong.empty())
       return tl::unexpected(CommandLineStop{ExitCode::kUsage, wrong});
     return transfer;

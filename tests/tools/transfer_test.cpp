@@ -84,6 +84,33 @@ TEST_F(PairOfSurfaces, TransferOptionsThatContradictAreRefused) {
   EXPECT_THAT(written(), testing::IsEmpty());
 }
 
+TEST_F(PairOfSurfaces, TransferOptionsThatTheModeDoesNotReadAreRefused) {
+  const std::string pair = "transfer source.obj target.off --output out/a.obj ";
+  write("c.toml", "[transfer]\nsize=64\n");
+  for (const auto& [options, line] : std::map<std::string, std::string>{
+           {"--size 2048", "--size: it needs --mode bake"},
+           {"--mode keep --image jpeg", "--image: it needs --mode bake"},
+           {"--mode keep --image exr", "--image: it needs --mode bake"},
+           {"--mode keep --bits 8", "--bits: it needs --mode bake"},
+           {"--round-trip", "--round-trip: it needs --mode bake"},
+           {"--config c.toml", "--size: it needs --mode bake"},
+           {"--mode bake --uv-tolerance 0.5", "--uv-tolerance: it needs --mode keep"}}) {
+    const test::Outcome done = run(pair + options);
+    EXPECT_EQ(done.exit_code, 2) << options;
+    EXPECT_THAT(done.err, testing::HasSubstr(line));
+    EXPECT_EQ(text_lines(done.err).size(), 1u) << done.err;
+  }
+  EXPECT_THAT(written(), testing::IsEmpty());
+  // What is printed for either mode can be read back.
+  for (const std::string mode : {"keep", "bake"}) {
+    const test::Outcome printed = run(pair + "--mode " + mode + " --print-config");
+    EXPECT_EQ(printed.exit_code, 0) << printed.err;
+    write("c.toml", printed.out);
+    EXPECT_EQ(run("transfer --config c.toml --print-config").out, printed.out);
+    EXPECT_EQ(run("transfer --config c.toml --landmarks none.txt").exit_code, 3) << mode;
+  }
+}
+
 TEST_F(PairOfSurfaces, MapsOfOtherProgramsAreUsed) {
   // Both have the same vertices: the identity maps one onto the other, counted from 0 or from 1.
   std::string from_zero, from_one, scattered;
