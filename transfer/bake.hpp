@@ -41,8 +41,8 @@ struct BakeStatistics {
   /// Texels a unit of length, target over source, at the median and at 5 and 95 % of the area; 0
   /// where the source has no image.
   std::array<double, 3> density_ratio{0, 0, 0};
-  /// Difference of the base colour on the two sides of seams, in 255ths, at 95 % of their length,
-  /// per mip level.
+  /// Difference of the base colour on the two sides of seams, beyond the contrast that the source
+  /// has there, in 255ths, at 95 % of their length, per mip level: see seam_error().
   std::array<double, kSeamLevels> seam_error{};
   BakeSeconds cpu_seconds{};
 };
