@@ -32,7 +32,8 @@ BakeCanvas make_canvas(int size, int channels);
 
 /// Paints empty texels up to `reach` texels from a seam, the nearest, with what lies across it: the
 /// faces there are unfolded into the plane of the seam's face, and the canvas is read where it was
-/// painted. So filtering sees the same on both sides of the seam.
+/// painted. So filtering sees the same on both sides of the seam. Not beside faces that are seen
+/// edge-on, of which a texel is sixteen times as long on the surface as the mean one.
 void continue_across_seams(BakeCanvas& canvas,
                            const TriangleMesh& mesh,
                            const Unwrap& unwrap,

@@ -107,6 +107,24 @@ TEST(BakeCanvas, GuttersShowWhatLiesAcrossASeamAroundAllItsCorners) {
   }
 }
 
+TEST(BakeCanvas, GuttersOfFacesSeenEdgeOnAreNotContinued) {
+  // The left half pressed together, a texel of it is `pressed` times as long as before; the mean
+  // one is longer too, by a factor of at most the root of 2.
+  for (const auto& [pressed, continued] : {std::pair(8, true), std::pair(32, false)}) {
+    CutSquare square;
+    for (int h = 0; h < square.mesh.halfedge_count(); ++h)
+      if (square.is_left[idx(face_of(h))]) square.unwrap.uv[idx(h)][0] /= pressed;
+    BakeCanvas canvas = painted(square, 3);
+    continue_across_seams(canvas, square.mesh, square.unwrap, kReach);
+    int left = 0, right = 0;
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x)
+        if (canvas.state[canvas.texel(x, y)] == kContinued) ++(x < kSize / 2 ? left : right);
+    EXPECT_EQ(left > 0, continued) << pressed;
+    EXPECT_GT(right, 100) << pressed;
+  }
+}
+
 TEST(BakeCanvas, WhatIsLeftIsFilledSmoothlyAndWhatIsPaintedStays) {
   const CutSquare square;
   BakeCanvas canvas = painted(square, 3);
