@@ -287,6 +287,16 @@ Result<RasterImage> bake_channel(const Carried& carried,
   return finish(std::move(canvas), is_color(channel));
 }
 
+/// The target's own texture coordinates, if images can be baked over them.
+Result<Unwrap> serving_unwrap(const AttributedMesh& target, double most_folded) {
+  Result<Unwrap> own = own_unwrap(target);
+  if (!own) return own;
+  if (const double folded = folded_share(target.prepared.mesh, *own); folded > most_folded)
+    return fail(ErrorCode::kBadInput,
+                fmt::format("{:.2g} of its area is folded over in the image", folded));
+  return own;
+}
+
 }  // namespace
 
 Result<BakedTexture> bake_texture(const AttributedMesh& source,
@@ -303,7 +313,7 @@ Result<BakedTexture> bake_texture(const AttributedMesh& source,
   const TriangleMesh& surface = target.prepared.mesh;
   std::optional<Stopwatch> watch(std::in_place, s.cpu_seconds.prepare);
   Unwrap unwrap;
-  if (Result<Unwrap> own = own_unwrap(target)) {
+  if (Result<Unwrap> own = serving_unwrap(target, options.most_folded)) {
     s.own_unwrap = true;
     unwrap = std::move(*own);
   } else {

@@ -15,6 +15,10 @@ constexpr int kLeastBakeSize = 16, kLargestBakeSize = 16384;
 struct BakeOptions {
   int size = 2048;           ///< texels a side, kLeastBakeSize to kLargestBakeSize
   ImageEncoding encoding{};  ///< of the images made
+  /// Share of the target's area that may be folded over in its own texture coordinates. Ours:
+  /// well-made ones have up to 1e-4, those seen from one side, whose folds show as streaks, 4e-3
+  /// and more.
+  double most_folded = 1e-3;
 };
 
 /// Mip levels at which seams are looked at.
@@ -54,13 +58,13 @@ struct BakedTexture {
 
 /// Paints the look of `source` into new images over `target`, whose triangles stay as they are.
 ///
-/// The images lie over the target's own texture coordinates where these are an unwrap (own_unwrap),
-/// else over an atlas (make_atlas). Every texel is filled through the exact map with the mean of
-/// its footprint in the source's texture; gutters continue across seams with what lies there, and
-/// smoothly elsewhere. Factors and vertex colours are painted in; base colour always, other kinds
-/// where a material of the source has them. Normal maps are turned into the target's tangent
-/// frames. Places that the map does not reach are grey. kBadInput: an image of the source cannot be
-/// decoded; `size` is out of range. Cost: linear in texels and overlay triangles.
+/// The images lie over the target's own texture coordinates where these are an unwrap (own_unwrap)
+/// without folds, else over an atlas (make_atlas). Every texel is filled through the exact map with
+/// the mean of its footprint in the source's texture; gutters continue across seams with what lies
+/// there, and smoothly elsewhere. Factors and vertex colours are painted in; base colour always,
+/// other kinds where a material of the source has them. Normal maps are turned into the target's
+/// tangent frames. Places that the map does not reach are grey. kBadInput: an image of the source
+/// cannot be decoded; `size` is out of range. Cost: linear in texels and overlay triangles.
 Result<BakedTexture> bake_texture(const AttributedMesh& source,
                                   const AttributedMesh& target,
                                   const SurfaceMap& map,

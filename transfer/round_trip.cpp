@@ -90,7 +90,9 @@ Result<RoundTrip> round_trip(const AttributedMesh& source,
   const AsRead there = as_read(target.prepared.mesh, baked);
   RoundTrip trip;
   trip.size = comparable_size(look);
-  const BakeOptions options{.size = trip.size, .encoding = {.bits = 16, .png_compression = 1}};
+  const BakeOptions options{.size = trip.size,
+                            .encoding = {.bits = 16, .png_compression = 1},
+                            .most_folded = 1};  // what the source has there is folded too
   const Result<RasterImage> before =
       base_color(bake_texture(plain, plain, identity_map(mesh), options));
   if (!before) return tl::unexpected(before.error());

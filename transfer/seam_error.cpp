@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/index.hpp"
-#include "core/union_find.hpp"
 #include "transfer/texel_raster.hpp"
 #include "transfer/texture_pyramid.hpp"
 
@@ -28,17 +27,10 @@ Eigen::Array3f stored(const Eigen::Array4f& linear) {
 /// A number of its own, from 1, for each chart of the unwrap; charts beyond the 65535th share
 /// theirs with others.
 std::vector<std::uint16_t> chart_of_face(const TriangleMesh& mesh, const Unwrap& unwrap) {
-  UnionFind charts(mesh.face_count());
-  for (int h = 0; h < mesh.halfedge_count(); ++h)
-    if (is_joined(mesh, unwrap, h)) charts.join(face_of(h), face_of(mesh.twin[idx(h)]));
-  std::vector<std::uint16_t> chart(idx(mesh.face_count()));
-  int count = 0;
-  for (int f = 0; f < mesh.face_count(); ++f) {
-    const int first = charts.find(f);  // never after f
-    chart[idx(f)] =
-        first == f ? static_cast<std::uint16_t>(1 + count++ % 65535) : chart[idx(first)];
-  }
-  return chart;
+  std::vector<std::uint16_t> number;
+  for (const int chart : charts_of(mesh, unwrap))
+    number.push_back(static_cast<std::uint16_t>(1 + chart % 65535));
+  return number;
 }
 
 /// The chart that holds each texel's centre, or 0.

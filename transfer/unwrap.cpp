@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/index.hpp"
+#include "core/union_find.hpp"
 #include "transfer/texel_raster.hpp"
 
 namespace crosspatch {
@@ -44,6 +45,34 @@ Result<Unwrap> own_unwrap(const AttributedMesh& m) {
     return fail(ErrorCode::kBadInput,
                 fmt::format("{:.2g} of its texels belong to several places", shared));
   return unwrap;
+}
+
+std::vector<int> charts_of(const TriangleMesh& mesh, const Unwrap& unwrap) {
+  UnionFind joined(mesh.face_count());
+  for (int h = 0; h < mesh.halfedge_count(); ++h)
+    if (is_joined(mesh, unwrap, h)) joined.join(face_of(h), face_of(mesh.twin[idx(h)]));
+  std::vector<int> chart(idx(mesh.face_count()));
+  int count = 0;
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    const int first = joined.find(f);  // never after f
+    chart[idx(f)] = first == f ? count++ : chart[idx(first)];
+  }
+  return chart;
+}
+
+double folded_share(const TriangleMesh& mesh, const Unwrap& unwrap) {
+  const std::vector<int> chart = charts_of(mesh, unwrap);
+  const Eigen::VectorXd area = face_areas(mesh);
+  Eigen::VectorXd image = Eigen::VectorXd::Zero(mesh.face_count()), of_chart = image;
+  for (int f = 0; f < mesh.face_count(); ++f) {
+    const auto [a, b, c] = in_texels(unwrap, f, 1);
+    image[f] = doubled_area(a, b, c);
+    of_chart[chart[idx(f)]] += image[f];
+  }
+  double folded = 0;
+  for (int f = 0; f < mesh.face_count(); ++f)
+    if (image[f] * of_chart[chart[idx(f)]] < 0) folded += area[f];
+  return area.sum() > 0 ? folded / area.sum() : 0;
 }
 
 std::array<Vector2d, 3> in_texels(const Unwrap& unwrap, int face, int size) {

@@ -18,6 +18,14 @@ struct Unwrap {
 /// than a thousandth of the whole (looked at with 1024 texels a side).
 Result<Unwrap> own_unwrap(const AttributedMesh& mesh);
 
+/// The chart of each face, from 0 in the order of their first faces: faces whose images meet.
+std::vector<int> charts_of(const TriangleMesh& mesh, const Unwrap& unwrap);
+
+/// Share of the mesh's area on faces that are turned over against most of their chart, by area in
+/// the image. They lie over their neighbours, which own_unwrap hardly sees where faces are seen
+/// edge-on: hardly a texel belongs to them.
+double folded_share(const TriangleMesh& mesh, const Unwrap& unwrap);
+
 /// The corners of `face` in texels of an image with `size` texels a side.
 std::array<Vector2d, 3> in_texels(const Unwrap& unwrap, int face, int size);
 

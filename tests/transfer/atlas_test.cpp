@@ -76,5 +76,30 @@ TEST(Unwrap, OfTheFileServesOnlyWhereItIsOne) {
               testing::HasSubstr("no texture coordinates"));
 }
 
+TEST(Unwrap, FoldsAreMeasuredOnTheSurface) {
+  const TriangleMesh mesh = shapes::grid(4);
+  // The last of four columns is folded back, and pressed together so that it has hardly a texel.
+  const auto folded = [&](double sign) {
+    Unwrap unwrap;
+    for (int h = 0; h < mesh.halfedge_count(); ++h) {
+      const Vector3d p = mesh.position(mesh.from(h));
+      const double x = p[0] > 0.75 + 1e-9 ? 0.75 - 1e-4 : p[0];
+      unwrap.uv.emplace_back(0.5 + sign * (x - 0.5), p[1]);
+    }
+    return folded_share(mesh, unwrap);
+  };
+  EXPECT_NEAR(folded(1), 0.25, 1e-12);
+  EXPECT_NEAR(folded(-1), 0.25, 1e-12);
+  // A chart that is turned over as a whole lies on nothing.
+  Unwrap apart;
+  for (int h = 0; h < mesh.halfedge_count(); ++h) {
+    const Vector3d p = mesh.position(mesh.from(h));
+    double x = 0;
+    for (int k = 0; k < 3; ++k) x += mesh.V(mesh.F(face_of(h), k), 0) / 3;
+    apart.uv.emplace_back(x > 0.5 ? 1.5 - p[0] : p[0] / 2, p[1]);
+  }
+  EXPECT_EQ(folded_share(mesh, apart), 0);
+}
+
 }  // namespace
 }  // namespace crosspatch
