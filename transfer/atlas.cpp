@@ -9,6 +9,7 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <set>
 
 #include "core/index.hpp"
 #include "transfer/charts.hpp"
@@ -25,9 +26,47 @@ struct FlatChart {
   Vector2d extent{0, 0};
 };
 
-bool overlaps_itself(const std::vector<Vector2d>& corners) {
+struct Segment {
+  Vector2d a, b;
+};
+
+/// Whether two segments cross inside of both.
+bool cross(const Segment& s, const Segment& t) {
+  return doubled_area(s.a, s.b, t.a) * doubled_area(s.a, s.b, t.b) < 0 &&
+         doubled_area(t.a, t.b, s.a) * doubled_area(t.a, t.b, s.b) < 0;
+}
+
+/// The sides of the faces that no two of them share, where they lie in the plane.
+std::vector<Segment> outline(const TriangleMesh& mesh,
+                             const std::vector<int>& faces,
+                             const std::vector<Vector2d>& corners) {
+  const std::set<int> inside(faces.begin(), faces.end());
+  std::vector<Segment> sides;
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int twin = mesh.twin[idx(3 * faces[i]) + k];
+      if (twin < 0 || !inside.contains(face_of(twin)))
+        sides.push_back({corners[3 * i + k], corners[3 * i + (k + 1) % 3]});
+    }
+  return sides;
+}
+
+bool crosses_itself(std::vector<Segment> sides) {
+  const auto left = [](const Segment& s) { return std::min(s.a[0], s.b[0]); };
+  std::sort(sides.begin(), sides.end(), [&](const Segment& s, const Segment& t) {
+    return left(s) < left(t);
+  });
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const double right = std::max(sides[i].a[0], sides[i].b[0]);
+    for (std::size_t j = i + 1; j < sides.size() && left(sides[j]) <= right; ++j)
+      if (cross(sides[i], sides[j])) return true;
+  }
+  return false;
+}
+
+/// Whether a texel of an image of 256 texels a side belongs to two faces.
+bool shares_texels(const std::vector<Vector2d>& corners) {
   constexpr int kSize = 256;
-  constexpr double kShare = 1e-3;  // texels that rounding gives to two faces
   Vector2d low = corners.front(), high = low;
   for (const Vector2d& p : corners) {
     low = low.cwiseMin(p);
@@ -36,7 +75,25 @@ bool overlaps_itself(const std::vector<Vector2d>& corners) {
   const double scale = std::max((high - low).maxCoeff(), std::numeric_limits<double>::min());
   Unwrap unwrap;
   for (const Vector2d& p : corners) unwrap.uv.emplace_back((p - low) / scale);
-  return overlap(unwrap, {}, kSize) > kShare;
+  return overlap(unwrap, {}, kSize) > 0;
+}
+
+bool has_turned_faces(const std::vector<Vector2d>& corners) {
+  const auto area = [&](std::size_t c) {
+    return doubled_area(corners[c], corners[c + 1], corners[c + 2]);
+  };
+  for (std::size_t c = 0; c < corners.size(); c += 3)
+    if (!(area(c) * area(0) > 0)) return true;
+  return false;
+}
+
+/// Whether a chart covers a place twice. In one piece, without turned faces, it does where its
+/// outline crosses itself, however little; pieces that lie inside of others share texels.
+bool overlaps_itself(const TriangleMesh& mesh,
+                     const std::vector<int>& faces,
+                     const std::vector<Vector2d>& corners) {
+  return has_turned_faces(corners) || crosses_itself(outline(mesh, faces, corners)) ||
+         shares_texels(corners);
 }
 
 /// Cuts faces in two across the longest extent of their centres.
@@ -62,9 +119,9 @@ std::array<std::vector<int>, 2> halves(const TriangleMesh& mesh, std::vector<int
 /// Lays faces flat without overlap, in as many charts as that takes.
 void lay_out(const TriangleMesh& mesh, std::vector<int> faces, std::vector<FlatChart>& charts) {
   std::vector<Vector2d> corners = flatten_chart(mesh, faces);
-  if (faces.size() > 1 && overlaps_itself(corners)) {
+  if (faces.size() > 1 && overlaps_itself(mesh, faces, corners)) {
     corners = chart_shadow(mesh, faces);
-    if (overlaps_itself(corners)) {
+    if (overlaps_itself(mesh, faces, corners)) {
       for (std::vector<int>& part : halves(mesh, std::move(faces)))
         lay_out(mesh, std::move(part), charts);
       return;
