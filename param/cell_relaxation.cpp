@@ -95,9 +95,10 @@ class CellRelaxation {
                         [&](const tbb::blocked_range<std::size_t>& range) {
                           for (std::size_t i = range.begin(); i < range.end(); ++i) {
                             const int v = colour[i];
-                            gain[i] = move(v, moved, others_moved, scratch_.local());
+                            const Move made = move(v, moved, others_moved, scratch_.local());
+                            gain[i] = made.gain;
                             tried_[idx(v)] = now;
-                            if (gain[i] > 0) moved[idx(v)] = now;
+                            if (made.is_notable) moved[idx(v)] = now;
                           }
                         });
       gained = std::accumulate(gain.begin(), gain.end(), gained);
@@ -131,12 +132,17 @@ class CellRelaxation {
     });
   }
 
-  double move(int v, const Times& moved, const Times& others_moved, Scratch& scratch) {
+  struct Move {
+    double gain = 0;          ///< by how much the energy falls
+    bool is_notable = false;  ///< whether others should be tried again for it
+  };
+
+  Move move(int v, const Times& moved, const Times& others_moved, Scratch& scratch) {
     constexpr double kBound = 5;
     const Vector3d center = X_.row(v).transpose();
     scratch.met.clear();
     const Energy now = around(v, center, hint_[idx(v)], kInfinity, scratch);
-    if (!(now.sum > kBound * now.weight) || !(now.sum < kInfinity)) return 0;
+    if (!(now.sum > kBound * now.weight) || !(now.sum < kInfinity)) return {};
     const int last = tried_[idx(v)];
     bool changed = moved[idx(v)] >= last;
     for_each_outgoing(
@@ -144,12 +150,12 @@ class CellRelaxation {
     for (std::size_t i = 0; i < scratch.met.size() && !changed; ++i)
       for (int k = 0; k < 3; ++k)
         changed = changed || others_moved[idx(other_.F(scratch.met[i], k))] > last;
-    if (!changed) return 0;
+    if (!changed) return {};
     scratch.ring.clear();
     for_each_outgoing(
         mesh_, v, [&](int h) { scratch.ring.emplace_back(mesh_.to(h), mesh_.to(next(h))); });
     const RingKernel kernel(X_, scratch.ring, center);
-    if (kernel.corners().empty()) return 0;
+    if (kernel.corners().empty()) return {};
     constexpr double kWorthwhile = 1e-3;
     double best = now.sum;
     Vector2d place = Vector2d::Zero();
@@ -170,7 +176,8 @@ class CellRelaxation {
       search(kernel, place, consider);
     else
       newton_step(v, kernel, now.sum, consider, scratch);
-    return now.sum - best;
+    constexpr double kNotable = 1e-2;  // less costs more time than it is worth
+    return {now.sum - best, now.sum - best > kNotable * now.sum};
   }
 
   /// A step to the minimum of the quadratic through the energies at v and five places around it.
