@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 
 #include "tools/pipeline.hpp"
 
@@ -45,6 +46,14 @@ std::vector<FigureVerdict> verdicts(const std::map<std::string, double>& quality
       "Confidence",
       percent,
       [](double v) { return v >= 1 ? 0 : (v >= 1.0 / 3 ? 1 : 2); },
+      {"The choice is clear and no part is crumpled: the map can be trusted.",
+       "Look at it first: the choice of the map or its distortion, below, is not safe.",
+       "Look closely: the choice of the map or its distortion, below, is far from safe."});
+  add(
+      "margin",
+      "Margin over the next best map",
+      [](double v) { return std::isfinite(v) ? fmt::format("{:.3f}", v) : "no other map"; },
+      [](double v) { return v >= kSafeMargin ? 0 : (v >= kSafeMargin / 3 ? 1 : 2); },
       {"No other way to see it comes close: left, right, front and back can be trusted.",
        "Another way to see it is not much worse. Look whether left and right are right.",
        "Another way to see it is about as good. Look closely; one or two landmarks settle it."});
@@ -74,6 +83,13 @@ std::vector<FigureVerdict> verdicts(const std::map<std::string, double>& quality
       {"Few places are stretched much.",
        "Some parts, such as ears or hands, are stretched.",
        "Whole parts are stretched: perhaps one of the two lacks them."});
+  add("symmetric_dirichlet_99",
+      "Distortion, 99 of 100 below",
+      number,
+      less({kSafeEnergy, 3 * kSafeEnergy}),
+      {"No part is crumpled.",
+       "A part is crumpled: perhaps the other surface lacks it.",
+       "Parts are crumpled: the two may not correspond there."});
   add("texels_filled",
       "Texels filled",
       percent,

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "core/index.hpp"
 #include "shapes.hpp"
 #include "tools/base64.hpp"
@@ -27,6 +29,14 @@ TEST(Verdicts, SpeakOfTheFiguresThatThereAre) {
   EXPECT_EQ(told[0].level, "fair");
   EXPECT_EQ(told[1].level, "good");
   EXPECT_EQ(verdicts({{"flipped_triangles", 1}})[0].level, "poor");
+  // What makes a confidence low is told apart.
+  const auto crumpled =
+      verdicts({{"confidence", 0.5}, {"margin", 0.4}, {"symmetric_dirichlet_99", 200}});
+  ASSERT_EQ(crumpled.size(), 3U);
+  EXPECT_EQ(crumpled[1].level, "good");
+  EXPECT_EQ(crumpled[2].level, "fair");
+  EXPECT_EQ(verdicts({{"margin", std::numeric_limits<double>::infinity()}})[0].value,
+            "no other map");
 }
 
 TEST(DisplayMesh, PlacesAreWhereTheMapComesFrom) {
