@@ -6,10 +6,10 @@
 #include <tbb/global_control.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <filesystem>
 
 #include "benchmark_commit.hpp"
+#include "tools/benchmarks/timing.hpp"
 #include "tools/pipeline.hpp"
 
 namespace crosspatch {
@@ -21,11 +21,6 @@ struct Arguments {
   int runs = 3;
   int threads = 1;
 };
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
 
 Status measure(const Arguments& arguments, const PairRun& pair, int size) {
   std::vector<BakeSeconds> runs;

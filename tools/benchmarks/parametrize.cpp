@@ -2,19 +2,20 @@
 // and boundary, the median of the runs in CPU seconds.
 #include "param/parametrize.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <vector>
 
 #include "param/tutte.hpp"
+#include "tools/benchmarks/timing.hpp"
 
 namespace {
 
+using crosspatch::cpu_seconds;
 using crosspatch::MatrixX2d;
 using crosspatch::MatrixX3d;
 using crosspatch::MatrixX3i;
+using crosspatch::median;
 using crosspatch::PatchBoundary;
 using crosspatch::TriangleMesh;
 
@@ -34,16 +35,6 @@ TriangleMesh bumpy_square(int n) {
       F.row(f + 1) << a, a + n + 2, a + n + 1;
     }
   return crosspatch::split_chords(crosspatch::make_mesh(V, F).value()).mesh;
-}
-
-/// CPU seconds of the process, which a busy machine does not stretch.
-double cpu_seconds() {
-  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
 }
 
 bool report(int n, PatchBoundary boundary, int stiffening) {

@@ -4,12 +4,11 @@
 #include <tbb/global_control.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <array>
-#include <ctime>
 #include <filesystem>
 
 #include "benchmark_commit.hpp"
+#include "tools/benchmarks/timing.hpp"
 #include "tools/pipeline.hpp"
 
 namespace crosspatch {
@@ -24,15 +23,6 @@ struct Arguments {
 
 constexpr std::array kStages{
     "source", "target", "features", "embedding", "judging", "finals", "map"};
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
-double cpu_seconds() {
-  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
 
 Status measure(const PairFiles& files, int threads, int runs) {
   const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
