@@ -18,6 +18,7 @@
 #include "core/index.hpp"
 #include "param/lift.hpp"
 #include "param/ring_kernel.hpp"
+#include "param/sphere_optimizer.hpp"
 #include "param/sphere_orientation.hpp"
 #include "param/vertex_colours.hpp"
 
@@ -109,14 +110,14 @@ class CellRelaxation {
  private:
   using Corners = Eigen::Matrix<double, 2, 3>;
 
-  /// Every face laid out in the plane.
+  /// Every face laid out in the plane, slivers thickened: exact ones outweigh all else, and what is
+  /// around them is crumpled to straighten the images of their sides.
   static std::vector<Corners> flatten(const TriangleMesh& mesh) {
     std::vector<Corners> flat(idx(mesh.face_count()));
     for (int f = 0; f < mesh.face_count(); ++f) {
       const Vector3d a = mesh.position(mesh.F(f, 0));
       const Vector3d u = mesh.position(mesh.F(f, 1)) - a, v = mesh.position(mesh.F(f, 2)) - a;
-      const double length = std::max(u.norm(), 1e-300);
-      flat[idx(f)] << 0, length, v.dot(u) / length, 0, 0, u.cross(v).norm() / length;
+      flat[idx(f)] << Vector2d::Zero(), thickened_sides(u, v);
     }
     return flat;
   }

@@ -465,22 +465,27 @@ class Optimizer {
 
 }  // namespace
 
-SphereProblem make_sphere_problem(MatrixX3i F, const MatrixX3d& V, const std::vector<int>& pinned) {
+Eigen::Matrix2d thickened_sides(const Vector3d& u, const Vector3d& v) {
   constexpr double kSliver = 0.02;
+  const double longest = std::max({u.norm(), v.norm(), (u - v).norm(), 1e-12});
+  const double base = std::max(u.norm(), kSliver * longest);
+  const double x = u.norm() > 0 ? v.dot(u) / u.norm() : 0;
+  const double height = std::max(u.cross(v).norm() / base, kSliver * longest);
+  Eigen::Matrix2d E;
+  E << base, x, 0, height;
+  return E;
+}
+
+SphereProblem make_sphere_problem(MatrixX3i F, const MatrixX3d& V, const std::vector<int>& pinned) {
   SphereProblem problem;
   problem.rest_inverse.resize(at(static_cast<int>(F.rows())));
   problem.rest_area.resize(F.rows());
   for (int f = 0; f < F.rows(); ++f) {
     const Vector3d u = (V.row(F(f, 1)) - V.row(F(f, 0))).transpose();
     const Vector3d v = (V.row(F(f, 2)) - V.row(F(f, 0))).transpose();
-    const double longest = std::max({u.norm(), v.norm(), (u - v).norm(), 1e-12});
-    const double base = std::max(u.norm(), kSliver * longest);
-    const double x = u.norm() > 0 ? v.dot(u) / u.norm() : 0;
-    const double height = std::max(u.cross(v).norm() / base, kSliver * longest);
-    Eigen::Matrix2d E;
-    E << base, x, 0, height;
+    const Eigen::Matrix2d E = thickened_sides(u, v);
     problem.rest_inverse[at(f)] = E.inverse();
-    problem.rest_area[f] = 0.5 * base * height;
+    problem.rest_area[f] = 0.5 * E.determinant();
   }
   problem.reference_orientation =
       8 * std::numbers::pi / problem.rest_area.sum() * problem.rest_area;

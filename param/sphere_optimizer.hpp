@@ -24,9 +24,13 @@ struct SphereProblem {
   double field_weight = 0;
 };
 
-/// The faces `F` with the shapes they have in `V`; slivers are thickened to a height of a fiftieth
-/// of their longest edge, because the energy of a flatter triangle says nothing about the surface.
-/// `pinned` vertices do not move.
+/// The triangle with sides `u` and `v` laid out in the plane, these in the columns; slivers are
+/// thickened to a height of a fiftieth of their longest edge, because the energy of a flatter
+/// triangle says nothing about the surface.
+Eigen::Matrix2d thickened_sides(const Vector3d& u, const Vector3d& v);
+
+/// The faces `F` with the shapes they have in `V`, slivers thickened; `pinned` vertices do not
+/// move.
 SphereProblem make_sphere_problem(MatrixX3i F, const MatrixX3d& V, const std::vector<int>& pinned);
 
 struct SphereOptimizerOptions {
