@@ -34,7 +34,9 @@ struct Energy {
 
 /// A triangle clipped by three lines, barycentric in the moving face.
 struct Cell {
-  static constexpr int kMost = 9;  ///< six, but for rounding
+  /// Six, if exact. Where rounding scatters the signs at the n corners of a flat one, a clip leaves
+  /// up to n / 2 of them and n crossings: 3, 4, 6, 9.
+  static constexpr int kMost = 9;
   std::array<Vector3d, kMost> corner;
   int size = 0;
 
