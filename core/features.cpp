@@ -45,20 +45,34 @@ Result<ShapeFeatures> compute_features(const TriangleMesh& mesh, const FeatureOp
   if (!chirality) return tl::unexpected(chirality.error());
   features.chirality = std::move(*chirality);
   features.spectrum = std::move(*spectrum);
-  auto tips = canonical_tips(mesh, features.log_adf, options.tip_persistence);
-  if (!tips) return tl::unexpected(tips.error());
-  features.tips = std::move(*tips);
-  if (features.tips.size() > static_cast<std::size_t>(options.max_tips))
-    features.tips.resize(static_cast<std::size_t>(options.max_tips));
+  auto extremities = canonical_tips(
+      mesh, features.log_adf, std::min(options.extremity_persistence, options.tip_persistence));
+  if (!extremities) return tl::unexpected(extremities.error());
+  features.extremities = std::move(*extremities);
+  const auto count = [&](double persistence, int most) {
+    const auto lesser = std::find_if(
+        features.extremities.begin(), features.extremities.end(), [&](const Tip& extremity) {
+          return extremity.persistence < persistence;
+        });
+    return std::min(lesser - features.extremities.begin(), static_cast<std::ptrdiff_t>(most));
+  };
+  features.tips.assign(
+      features.extremities.begin(),
+      features.extremities.begin() + count(options.tip_persistence, options.max_tips));
+  features.extremities.resize(
+      static_cast<std::size_t>(count(options.extremity_persistence, options.max_extremities)));
   std::vector<int> vertices;
-  for (const Tip& tip : features.tips) vertices.push_back(tip.vertex);
+  for (const Tip& extremity : features.extremities) vertices.push_back(extremity.vertex);
+  const double unit = std::sqrt(total_area(mesh));
+  features.extremity_distances = geodesic_distances(mesh, vertices) / unit;
+  vertices.resize(features.tips.size());
   while (static_cast<int>(vertices.size()) < std::min(options.least_tips, mesh.vertex_count())) {
     Eigen::Index farthest = 0;
     geodesic_distance_to_set(mesh, vertices).maxCoeff(&farthest);
     vertices.push_back(static_cast<int>(farthest));
     features.tips.push_back({vertices.back(), 0, features.log_adf[farthest]});
   }
-  features.tip_distances = geodesic_distances(mesh, vertices) / std::sqrt(total_area(mesh));
+  features.tip_distances = geodesic_distances(mesh, vertices) / unit;
   return features;
 }
 

@@ -23,6 +23,10 @@ struct FeatureOptions {
   /// Least persistence of a tip on log ADF. 0.02 lies on the plateau from about .015 to .1 on which
   /// the count of tips agrees over poses and related species (measured on FAUST, TOSCA, SHREC'07).
   double tip_persistence = 0.02;
+  /// Least persistence of an extremity that is no tip: fingers and toes of scanned bodies have
+  /// 0.004 and more.
+  double extremity_persistence = 0.003;
+  int max_extremities = 40;  ///< of more the most persistent are kept
   /// Of more tips the most persistent are kept.
   int max_tips = 24;
   /// Fewer tips are filled up, with persistence 0, by vertices farthest from those there are: ours,
@@ -33,12 +37,14 @@ struct FeatureOptions {
 /// What is computed once of each surface, in units of the surface scaled to area 1.
 struct ShapeFeatures {
   Spectrum spectrum;
-  Eigen::VectorXd log_adf;        ///< #V, natural logarithm of Eq. (1)
-  Eigen::MatrixXd log_hks;        ///< #V x times
-  Eigen::MatrixXd wks;            ///< #V x energies
-  Eigen::MatrixXd chirality;      ///< #V x 3, see chirality_fields
-  std::vector<Tip> tips;          ///< by falling persistence
-  Eigen::MatrixXd tip_distances;  ///< #V x tips, geodesic, divided by sqrt(area)
+  Eigen::VectorXd log_adf;              ///< #V, natural logarithm of Eq. (1)
+  Eigen::MatrixXd log_hks;              ///< #V x times
+  Eigen::MatrixXd wks;                  ///< #V x energies
+  Eigen::MatrixXd chirality;            ///< #V x 3, see chirality_fields
+  std::vector<Tip> tips;                ///< by falling persistence
+  Eigen::MatrixXd tip_distances;        ///< #V x tips, geodesic, divided by sqrt(area)
+  std::vector<Tip> extremities;         ///< tips and lesser maxima, by falling persistence
+  Eigen::MatrixXd extremity_distances;  ///< #V x extremities, likewise
 };
 
 /// Maxima of `log_adf` (#V) of at least `persistence`, by falling persistence (ties by vertex).

@@ -181,10 +181,14 @@ Result<Judgement> judge(const Shape& source,
   return judgement;
 }
 
-/// Where both sides of a body fit alike this decides; elsewhere it is small beside the distortion.
-/// Chosen on gorillas to humans and teddies, where correlations of right and mirrored maps are
-/// about 0.5 apart and their distortions a few hundredths.
-constexpr double kChiralityWeight = 0.15;
+double judged_energy(const SphereMap& map, double mean_energy) {
+  // Where both sides of a body fit alike this decides; elsewhere it is small beside the distortion.
+  // Chosen on gorillas to humans and teddies, where correlations of right and mirrored maps are
+  // about 0.5 apart and their distortions a few hundredths.
+  constexpr double kChiralityWeight = 0.15;
+  return std::log(mean_energy) + map.coarse_distortion() -
+         kChiralityWeight * map.coarse_chirality();
+}
 
 Result<Verdict> play_finals(const Shape& source,
                             const Shape& target,
@@ -195,8 +199,7 @@ Result<Verdict> play_finals(const Shape& source,
   std::vector<double> energy(count, kInfinity);
   std::vector<Status> started(count);
   const auto judge_by = [&](size_t i, double mean_energy) {
-    energy[i] = std::log(mean_energy) + maps[i]->coarse_distortion() -
-                kChiralityWeight * maps[i]->coarse_chirality();
+    energy[i] = judged_energy(*maps[i], mean_energy);
   };
   tbb::parallel_for(size_t{0}, count, [&](size_t i) {
     const Final& final = judgement.finals[i];

@@ -54,6 +54,9 @@ Result<Judgement> judge(const Shape& source,
                         std::vector<Candidate> candidates,
                         const JudgeOptions& options = {});
 
+/// Candidate::energy of a coarse map whose optimisation ended with this mean energy.
+double judged_energy(const SphereMap& map, double mean_energy);
+
 /// Mean distance on the target, in sqrt(area), up to which two coarse maps count as one: what leads
 /// to the same map in the end is no rival.
 constexpr double kSameMap = 0.05;

@@ -4,8 +4,11 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <optional>
 #include <tuple>
+#include <utility>
 
+#include "param/extremities.hpp"
 #include "param/join_openings.hpp"
 
 namespace crosspatch {
@@ -45,6 +48,13 @@ std::vector<Candidate> make_candidates(const ShapeFeatures& source,
   return candidates;
 }
 
+/// What stages after the proposals ask of the features.
+void hand_over(ShapeFeatures features, Shape& shape) {
+  shape.chirality = std::move(features.chirality);
+  for (const Tip& extremity : features.extremities) shape.extremities.push_back(extremity.vertex);
+  shape.extremity_distances = std::move(features.extremity_distances);
+}
+
 std::vector<int> side(const std::vector<Candidate>& candidates, int Landmark::*vertex) {
   std::vector<int> vertices;
   for (const Candidate& c : candidates)
@@ -81,20 +91,20 @@ Result<MatchedMap> match_closed(const TriangleMesh& source,
     if (options.progress) options.progress(name);
   };
   std::vector<Candidate> candidates{{given}};
-  std::array<Eigen::MatrixXd, 2> chirality;
+  std::optional<std::pair<ShapeFeatures, ShapeFeatures>> features;
   if (static_cast<int>(given.size()) < options.enough_landmarks) {
     stage("features");
-    const auto features = both<ShapeFeatures>([&](int i) {
+    auto found = both<ShapeFeatures>([&](int i) {
       const TriangleMesh& mesh = i == 0 ? source : target;
       std::vector<int> vertices;
       for (const Landmark& l : given)
         vertices.push_back(i == 0 ? l.source_vertex : l.target_vertex);
-      return compute_features(mesh, options.features).map([&](ShapeFeatures found) {
-        return with_landmarks(mesh, std::move(found), vertices);
+      return compute_features(mesh, options.features).map([&](ShapeFeatures own) {
+        return with_landmarks(mesh, std::move(own), vertices);
       });
     });
-    if (!features) return tl::unexpected(features.error());
-    chirality = {features->first.chirality, features->second.chirality};
+    if (!found) return tl::unexpected(found.error());
+    features = std::move(*found);
     candidates = make_candidates(features->first, features->second, given, options.proposal);
     if (candidates.empty())
       return fail(ErrorCode::kNoCorrespondence,
@@ -111,14 +121,18 @@ Result<MatchedMap> match_closed(const TriangleMesh& source,
         options.shape);
   });
   if (!shapes) return tl::unexpected(shapes.error());
-  shapes->first.chirality = std::move(chirality[0]);
-  shapes->second.chirality = std::move(chirality[1]);
+  if (features) {
+    hand_over(std::move(features->first), shapes->first);
+    hand_over(std::move(features->second), shapes->second);
+  }
   stage("judging");
   auto judgement = judge(shapes->first, shapes->second, std::move(candidates), options.judge);
   if (!judgement) return tl::unexpected(judgement.error());
   stage("finals");
   auto verdict = play_finals(shapes->first, shapes->second, std::move(*judgement), options.map);
   if (!verdict) return tl::unexpected(verdict.error());
+  const auto guided = guide_by_extremities(
+      shapes->first, shapes->second, verdict->maps[0], options.shape, options.map);
   stage("map");
   MatchedMap matched;
   matched.ranking = std::move(verdict->ranking);
@@ -129,6 +143,7 @@ Result<MatchedMap> match_closed(const TriangleMesh& source,
       options.alternatives > 0 ? differing_maps(*verdict) : std::vector<std::vector<size_t>>{};
   size_t winner = 0;
   Result<MapResult> result = fail(ErrorCode::kInternal, "not tried");
+  if (guided) result = finish_map(*guided->map, shapes->first, shapes->second);
   for (size_t i = 0; i < verdict->maps.size() && !result; ++i) {
     result = finish_map(*verdict->maps[i].map, shapes->first, shapes->second);
     winner = i;

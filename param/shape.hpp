@@ -13,8 +13,10 @@ struct Shape {
   ProgressiveMesh progressive;  ///< its levels
   MeshLevel coarse;  ///< the level on which candidate maps are judged; holds every landmark
   MatrixX3d X;       ///< #V x 3, its embedding in the unit sphere
-  Eigen::MatrixXd curvature;  ///< #V x fields, see curvature_fields
-  Eigen::MatrixXd chirality;  ///< #V x fields, see chirality_fields; empty where nobody asked
+  Eigen::MatrixXd curvature;     ///< #V x fields, see curvature_fields
+  Eigen::MatrixXd chirality;     ///< #V x fields, see chirality_fields; empty where nobody asked
+  std::vector<int> extremities;  ///< see ShapeFeatures; empty where nobody asked
+  Eigen::MatrixXd extremity_distances;  ///< #V x extremities
 };
 
 struct ShapeOptions {
@@ -27,5 +29,11 @@ struct ShapeOptions {
 Result<Shape> make_shape(TriangleMesh mesh,
                          const std::vector<int>& landmarks,
                          const ShapeOptions& options = {});
+
+/// The same surface with another coarse level, one that holds these landmarks. Errors of
+/// make_shape.
+Result<Shape> with_coarse_level(const Shape& shape,
+                                const std::vector<int>& landmarks,
+                                const ShapeOptions& options = {});
 
 }  // namespace crosspatch

@@ -33,6 +33,21 @@ ProgressiveMesh full_level(const TriangleMesh& mesh) {
   return p;
 }
 
+PlaceOnMesh place_on(const TriangleMesh& mesh, const SurfacePoint& p) {
+  const auto corner = mesh.F.row(p.face);
+  return {{corner[0], corner[1], corner[2]}, p.bary};
+}
+
+/// Where the embedding `image` has what lies at x in the one of `lift`.
+Vector3d carried(const MeshLift& lift,
+                 const TriangleMesh& mesh,
+                 const MatrixX3d& image,
+                 const Vector3d& x,
+                 int& face) {
+  const SurfacePoint p = lift.surface_point(x, face);
+  return (image(mesh.F.row(p.face), Eigen::all).transpose() * p.bary).normalized();
+}
+
 void nudge(const TriangleMesh& mesh, int v, int salt, MatrixX3d& X) {
   double shortest = 1;
   for_each_outgoing(mesh, v, [&](int h) {
@@ -147,6 +162,35 @@ double SphereMap::coarse_chirality() const {
   return (size > 0).select(product / size.max(1e-300), 0.0).mean();
 }
 
+std::vector<PlaceOnMesh> SphereMap::coarse_images(const std::vector<int>& vertices) const {
+  const MeshLevel level = mesh_level(source_.mesh, level_).value();
+  const MatrixX3d own = source_.X(level.vertex, Eigen::all), image = X_(level.vertex, Eigen::all);
+  const MeshLift in_level(level.mesh, own);
+  std::vector<PlaceOnMesh> places;
+  int source_face = 0, target_face = 0;
+  for (const int v : vertices) {
+    const Vector3d x = level_.faces(v).empty()
+                           ? carried(in_level, level.mesh, image, source_.X.row(v), source_face)
+                           : Vector3d(X_.row(v));
+    places.push_back(place_on(target_.mesh, lift_.surface_point(x, target_face)));
+  }
+  return places;
+}
+
+std::vector<PlaceOnMesh> SphereMap::coarse_preimages(const std::vector<int>& vertices) const {
+  const MeshLevel level = mesh_level(source_.mesh, level_).value();
+  const MatrixX3d image = X_(level.vertex, Eigen::all);
+  const MeshLift to_level(level.mesh, image);
+  std::vector<PlaceOnMesh> places;
+  int face = 0;
+  for (const int v : vertices) {
+    PlaceOnMesh place = place_on(level.mesh, to_level.surface_point(Y_.row(v).transpose(), face));
+    for (int& w : place.vertex) w = level.vertex[at(w)];
+    places.push_back(place);
+  }
+  return places;
+}
+
 double SphereMap::coarse_distance(const SphereMap& other) const {
   double sum = 0;
   int count = 0, face = 0;
@@ -192,10 +236,7 @@ Status SphereMap::spread_out() {
   int face = 0;
   for (int v = 0; v < source_.mesh.vertex_count(); ++v) {
     if (!level_.faces(v).empty()) continue;
-    const SurfacePoint p = in_level.surface_point(source_.X.row(v).transpose(), face);
-    Vector3d x = Vector3d::Zero();
-    for (int k = 0; k < 3; ++k) x += p.bary[k] * image.row(level->mesh.F(p.face, k)).transpose();
-    X_.row(v) = x.normalized().transpose();
+    X_.row(v) = carried(in_level, level->mesh, image, source_.X.row(v), face).transpose();
   }
   level_ = Refinement(full_level(source_.mesh));
   SphereProblem problem = make_sphere_problem(source_.mesh.F, source_.mesh.V, pinned_);

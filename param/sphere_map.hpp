@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -16,6 +17,12 @@ struct MapOptions {
   /// equally well; without it maps of isometric bodies slide along and around limbs (mean error 3.8
   /// from 2.5 and 1.7 from 1.2 on two FAUST pairs, 3.8 from 2.1 on a SMAL pair).
   double field_weight = 0.6;
+};
+
+/// A point of a mesh by the vertices of its triangle.
+struct PlaceOnMesh {
+  std::array<int, 3> vertex;
+  Vector3d bary;
 };
 
 /// The source's triangulation on the target's sphere, from the coarse level to the full mesh. The
@@ -46,6 +53,11 @@ class SphereMap {
   /// How well the chirality fields of both surfaces agree through the coarse map: their correlation
   /// over the coarse vertices, the mean over the fields, in [-1, 1]; 0 without fields.
   [[nodiscard]] double coarse_chirality() const;
+  /// Images of source vertices under the coarse map, as places on the full target. Vertices that
+  /// the level lacks go with the face that they lie in on the source's own embedding.
+  [[nodiscard]] std::vector<PlaceOnMesh> coarse_images(const std::vector<int>& vertices) const;
+  /// What the coarse map takes to vertices of the target: places in faces of the source's level.
+  [[nodiscard]] std::vector<PlaceOnMesh> coarse_preimages(const std::vector<int>& vertices) const;
   /// Mean distance on the surface, measured straight through space, between the images of the
   /// coarse vertices under this coarse map and another one of the same two surfaces.
   [[nodiscard]] double coarse_distance(const SphereMap& other) const;

@@ -37,6 +37,21 @@ TEST(Features, TipsAreSortedAndDistancesBelongToThem) {
   EXPECT_EQ(features.wks.rows(), mesh.vertex_count());
 }
 
+TEST(Features, ExtremitiesBeginWithTheTips) {
+  const ShapeFeatures features = compute_features(shapes::creature(3)).value();
+  ASSERT_GE(features.extremities.size(), features.tips.size());
+  ASSERT_EQ(features.extremity_distances.cols(),
+            static_cast<Eigen::Index>(features.extremities.size()));
+  for (size_t i = 0; i < features.extremities.size(); ++i) {
+    const int vertex = features.extremities[i].vertex;
+    if (i < features.tips.size()) {
+      EXPECT_EQ(vertex, features.tips[i].vertex);
+    }
+    EXPECT_GE(features.extremities[i].persistence, 0.003);
+    EXPECT_EQ(features.extremity_distances(vertex, static_cast<Eigen::Index>(i)), 0);
+  }
+}
+
 TEST(Features, DoNotDependOnScaleRotationOrVertexNumbers) {
   const TriangleMesh mesh = shapes::creature(3);
   const int n = mesh.vertex_count();
