@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "param/cell_relaxation.hpp"
+#include "param/congruence.hpp"
 #include "param/exact_isometry.hpp"
 #include "param/overlay.hpp"
 #include "param/sphere_orientation.hpp"
@@ -278,10 +279,12 @@ void SphereMap::settle() {
   descend(options_.fine_iterations);
   if (is_nearly_isometric()) {
     const MovingMesh on_source{source_.mesh, pinned_, X_}, on_target{b, pinned, Y_};
+    const bool congruent = make_congruent(on_source, on_target);
     const bool target_is_finer = b.vertex_count() >= source_.mesh.vertex_count();
     if (make_exact_isometry(target_is_finer ? on_source : on_target,
                             target_is_finer ? on_target : on_source,
-                            options_.fine_iterations))
+                            options_.fine_iterations) ||
+        congruent)
       return;  // the cells below would spoil it
     descend({.max_iterations = options_.fine_iterations, .relative_decrease = 1e-9, .barrier = 0},
             0);
