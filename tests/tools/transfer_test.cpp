@@ -212,10 +212,11 @@ TEST_F(PairOfSurfaces, AttributesAreCarried) {
   const auto quality = nlohmann::json::parse(test::read_text(folder / "out/a.json"))["quality"];
   EXPECT_EQ(quality["attribute_unmapped_vertices"], 0);
   EXPECT_EQ(quality["attribute_curve_gaps"], 0);
-  const auto lines = text_lines(test::read_text(folder / "out/heat.csv"));
+  const std::string heat = test::read_text(folder / "out/heat.csv");
+  const auto lines = text_lines(heat);
   ASSERT_EQ(lines.size(), 643u);
   double x = 0;
-  ASSERT_TRUE(parse_number(lines[1].words[0], x));
+  ASSERT_TRUE(parse_number(lines[1].words[0], x)) << lines[1].words[0];
   EXPECT_NEAR(x, mesh.V(0, 0), 1e-5) << "a landmark, met exactly; the CSV has six digits";
   const auto marks = nlohmann::json::parse(test::read_text(folder / "out/marks.json"));
   const TriangleMesh target = egg(1.4);
