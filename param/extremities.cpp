@@ -13,8 +13,7 @@ namespace {
 
 using std::size_t;
 
-/// The extremities of a surface that are not near landmarks (columns of `distance`), and their
-/// distances to all extremities of interest.
+/// The extremities of a surface that are not near landmarks, with their distances (sqrt(area)).
 struct Side {
   std::vector<int> vertex;
   std::vector<Eigen::Index> column;  ///< of Shape::extremity_distances
@@ -33,7 +32,7 @@ struct Side {
 Side free_extremities(const Shape& shape,
                       const std::vector<Landmark>& held,
                       int Landmark::*vertex) {
-  constexpr double kNear = 0.03;
+  constexpr double kNear = 0.03;  // fingertips of one hand are farther apart along the surface
   Side side{{}, {}, &shape};
   for (size_t i = 0; i < shape.extremities.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
@@ -62,7 +61,7 @@ Eigen::MatrixXd slips(const SphereMap& map, const Side& a, const Side& b) {
 /// How much the distances from each extremity to the landmarks differ, on average; near ones count
 /// most (by the inverse square of the distance), for they tell fingers of one hand apart.
 Eigen::MatrixXd disagreement(const Side& a, const Side& b, const std::vector<Landmark>& landmarks) {
-  constexpr double kLeast = 1e-3;
+  constexpr double kLeast = 1e-3;  // so that a landmark close by does not decide alone
   Eigen::MatrixXd mean(a.vertex.size(), b.vertex.size());
   for (size_t i = 0; i < a.vertex.size(); ++i)
     for (size_t j = 0; j < b.vertex.size(); ++j) {
@@ -100,6 +99,7 @@ Trial try_landmarks(const std::pair<Shape, Shape>& shapes,
   return trial;
 }
 
+/// Both surfaces with coarse levels that hold the landmarks; null where one cannot be coarsened.
 std::unique_ptr<std::pair<Shape, Shape>> holding(const Shape& source,
                                                  const Shape& target,
                                                  const std::vector<Landmark>& landmarks,
@@ -122,9 +122,11 @@ std::vector<Landmark> slipped_extremities(const SphereMap& map,
                                           const Shape& source,
                                           const Shape& target,
                                           const std::vector<Landmark>& held) {
+  // On the FAUST scans looked at fingers had slipped by 0.02 to 0.11; what is in place is within
+  // half an edge.
   constexpr double kReach = 0.15, kSlipped = 0.01, kNever = 1e3;
   constexpr double kLocal = 3;  // with 1 one pair of fingers of three FAUST pairs was exchanged
-  constexpr int kRounds = 4;
+  constexpr int kRounds = 4;    // those found in one are anchors of the next
   const Side a = free_extremities(source, held, &Landmark::source_vertex),
              b = free_extremities(target, held, &Landmark::target_vertex);
   if (a.vertex.empty() || b.vertex.empty()) return {};

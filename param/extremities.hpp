@@ -31,8 +31,8 @@ struct GuidedMap {
 
 /// Makes the map again with the extremities that have slipped as further landmarks, as long as that
 /// lowers what the finals judge by (judged_energy), by 0.03 or more, on the same coarse levels.
-/// None where nothing has slipped or no such map is better. `options` are those of the stages
-/// before.
+/// None where nothing has slipped or no such map is better. The options are those that
+/// made the shapes and the winner.
 std::optional<GuidedMap> guide_by_extremities(const Shape& source,
                                               const Shape& target,
                                               const Verdict::CoarseMap& winner,

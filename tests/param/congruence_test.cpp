@@ -2,38 +2,22 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
+#include <cmath>
+#include <utility>
 
 #include "param/lift.hpp"
 #include "param/sphere_orientation.hpp"
-#include "shapes.hpp"
+#include "refined_pair.hpp"
 
 namespace crosspatch {
 namespace {
 
-/// A surface without symmetries, and its refinement turned and moved in space, on one sphere, where
-/// both have slipped far: by more than a fine edge.
-struct TwoMeshes {
-  TriangleMesh coarse, fine;
-  MatrixX3d X, Y;
+/// The refinement is turned and moved in space, and both have slipped far: by more than a fine
+/// edge.
+struct TwoMeshes : shapes::RefinedPair {
   const std::vector<int> none;
 
   TwoMeshes() {
-    coarse = shapes::icosphere(2);
-    X = coarse.V;
-    for (int v = 0; v < coarse.vertex_count(); ++v) {
-      const Vector3d x = X.row(v);
-      coarse.V.row(v) = (1 + 0.2 * x[0] + 0.1 * x[1] * x[2]) *
-                        Eigen::RowVector3d(1.2 * x[0], x[1], 0.8 * x[2] + 0.3 * x[0] * x[0]);
-    }
-    coarse = normalized(coarse);
-    fine = shapes::refined(coarse);
-    Y.resize(fine.vertex_count(), 3);
-    Y.topRows(X.rows()) = X;
-    for (int f = 0; f < coarse.face_count(); ++f)
-      for (int k = 0; k < 3; ++k)
-        Y.row(fine.F(4 * f + 3, k)) =
-            (X.row(coarse.F(f, k)) + X.row(coarse.F(f, (k + 1) % 3))).normalized();
     const Eigen::AngleAxisd turn(1.1, Vector3d(0.3, -0.5, 0.8).normalized());
     fine.V =
         (fine.V * turn.toRotationMatrix().transpose()).rowwise() + Eigen::RowVector3d(3, -1, 0.5);

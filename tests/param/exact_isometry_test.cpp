@@ -5,34 +5,16 @@
 #include <random>
 
 #include "param/lift.hpp"
-#include "shapes.hpp"
+#include "refined_pair.hpp"
 
 namespace crosspatch {
 namespace {
 
 constexpr int kIterations = 40;
 
-/// A surface without symmetries and its refinement on one sphere, where both have slipped a little.
-struct TwoMeshes {
-  TriangleMesh coarse, fine;
-  MatrixX3d X, Y;
-
+/// Both have slipped a little.
+struct TwoMeshes : shapes::RefinedPair {
   TwoMeshes() {
-    X = shapes::icosphere(2).V;
-    coarse = shapes::icosphere(2);
-    for (int v = 0; v < coarse.vertex_count(); ++v) {
-      const Vector3d x = X.row(v);
-      coarse.V.row(v) = (1 + 0.2 * x[0] + 0.1 * x[1] * x[2]) *
-                        Eigen::RowVector3d(1.2 * x[0], x[1], 0.8 * x[2] + 0.3 * x[0] * x[0]);
-    }
-    coarse = normalized(coarse);
-    fine = shapes::refined(coarse);
-    Y.resize(fine.vertex_count(), 3);
-    Y.topRows(X.rows()) = X;
-    for (int f = 0; f < coarse.face_count(); ++f)
-      for (int k = 0; k < 3; ++k)
-        Y.row(fine.F(4 * f + 3, k)) =
-            (X.row(coarse.F(f, k)) + X.row(coarse.F(f, (k + 1) % 3))).normalized();
     std::mt19937 random(3);
     std::uniform_real_distribution<double> noise(-0.01, 0.01);  // edges are 0.14 and more
     for (MatrixX3d* places : {&X, &Y}) {
