@@ -49,8 +49,9 @@ std::vector<int> level_vertices(const MeshLevel& level, const std::vector<int>& 
   return found;
 }
 
-/// The shortest open chains through all points, given their distances (symmetric k x k): every one
-/// for up to 7 points, else nearest-neighbour chains from some of them, improved by reversals.
+/// The shortest open chains through all points, given their distances (symmetric k x k), out of
+/// every one for up to 7 points, else out of nearest-neighbour chains from some of them, improved
+/// by reversals, and what one more reversal makes of these.
 std::vector<std::vector<int>> shortest_chains(const Eigen::MatrixXd& D, int count) {
   const int k = static_cast<int>(D.rows());
   const auto length = [&](const std::vector<int>& c) {
@@ -59,6 +60,11 @@ std::vector<std::vector<int>> shortest_chains(const Eigen::MatrixXd& D, int coun
     return sum;
   };
   std::vector<std::pair<double, std::vector<int>>> chains;
+  const auto add = [&](std::vector<int> c) {
+    if (c.front() > c.back()) std::reverse(c.begin(), c.end());
+    const double l = length(c);
+    chains.emplace_back(l, std::move(c));
+  };
   std::vector<int> chain(at(k));
   std::iota(chain.begin(), chain.end(), 0);
   constexpr int kAll = 7;
@@ -90,9 +96,17 @@ std::vector<std::vector<int>> shortest_chains(const Eigen::MatrixXd& D, int coun
             }
           }
       }
-      if (chain.front() > chain.back()) std::reverse(chain.begin(), chain.end());
-      chains.emplace_back(length(chain), chain);
+      add(chain);
     }
+    const auto shortest = chains;
+    for (const auto& [unused, found] : shortest)
+      for (size_t i = 0; i < found.size(); ++i)
+        for (size_t j = i + 2; j <= found.size(); ++j) {
+          std::vector<int> trial = found;
+          std::reverse(trial.begin() + static_cast<std::ptrdiff_t>(i),
+                       trial.begin() + static_cast<std::ptrdiff_t>(j));
+          add(std::move(trial));
+        }
   }
   std::sort(chains.begin(), chains.end());
   chains.erase(std::unique(chains.begin(), chains.end()), chains.end());
@@ -139,25 +153,24 @@ std::vector<std::pair<std::vector<int>, std::vector<int>>> ChainPlanner::chains(
   return chains;
 }
 
-Result<InitialMap> initial_map(const Shape& source,
-                               const Shape& target,
-                               const std::vector<Landmark>& landmarks,
-                               int chains) {
-  if (landmarks.size() < 2)
-    return fail(ErrorCode::kNoCorrespondence,
-                fmt::format("map: {} landmarks, at least 2 are needed", landmarks.size()));
-  Result<InitialMap> best =
-      fail(ErrorCode::kNoCorrespondence, "map: no chain of paths through the landmarks can be cut");
+std::vector<InitialMap> initial_maps(const Shape& source,
+                                     const Shape& target,
+                                     const std::vector<Landmark>& landmarks,
+                                     int chains) {
+  std::vector<InitialMap> maps;
+  if (landmarks.size() < 2) return maps;
   for (const auto& [a, b] : ChainPlanner(source, target).chains(landmarks, chains)) {
     auto da = cut_along_chain(source.coarse.mesh, a);
     if (!da) continue;
     auto db = cut_along_chain(target.coarse.mesh, b);
     if (!db) continue;
     const double distortion = disc_distortion(*da, *db);
-    if (!best || distortion < best->distortion)
-      best = InitialMap{std::move(*da), std::move(*db), distortion};
+    maps.push_back({std::move(*da), std::move(*db), distortion});
   }
-  return best;
+  std::stable_sort(maps.begin(), maps.end(), [](const InitialMap& a, const InitialMap& b) {
+    return a.distortion < b.distortion;
+  });
+  return maps;
 }
 
 }  // namespace crosspatch

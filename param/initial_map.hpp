@@ -44,12 +44,12 @@ struct InitialMap {
   double distortion = 0;  ///< disc_distortion of the two
 };
 
-/// Cuts both coarse levels along chains through the landmarks (in the orders of least total length)
-/// and keeps the pair of discs with the least distortion. Landmarks are vertices of the full
-/// meshes, at least two. kNoCorrespondence if no chain can be cut.
-Result<InitialMap> initial_map(const Shape& source,
-                               const Shape& target,
-                               const std::vector<Landmark>& landmarks,
-                               int chains);
+/// Cuts both coarse levels along up to `chains` chains through the landmarks (in the orders of
+/// least total length); the pairs of discs by their distortion. Landmarks are vertices of the full
+/// meshes. Empty if no chain can be cut, or for fewer than two landmarks.
+std::vector<InitialMap> initial_maps(const Shape& source,
+                                     const Shape& target,
+                                     const std::vector<Landmark>& landmarks,
+                                     int chains);
 
 }  // namespace crosspatch

@@ -43,11 +43,11 @@ TEST(Extremities, ThatSlippedAreTakenToTheirOwn) {
   std::vector<Landmark> landmarks = limbs(source, target);
   const std::vector<Landmark> others(landmarks.begin() + 4, landmarks.end());
   landmarks.resize(4);
-  const auto initial = initial_map(source, target, landmarks, 2);
-  ASSERT_TRUE(initial) << initial.error().message;
+  const auto initial = initial_maps(source, target, landmarks, 2);
+  ASSERT_FALSE(initial.empty());
   const MapOptions options;
   SphereMap map(source, target, landmarks, options);
-  ASSERT_TRUE(map.start(*initial));
+  ASSERT_TRUE(map.start(initial.front()));
   const std::vector<Landmark> slipped = slipped_extremities(map, source, target, landmarks);
   ASSERT_EQ(slipped.size(), others.size());
   for (const Landmark& other : others)
@@ -61,12 +61,12 @@ TEST(Extremities, OfASurfaceOntoItselfHaveNotSlipped) {
   const Shape shape = creature_shape(3);
   std::vector<Landmark> landmarks = limbs(shape, shape);
   landmarks.resize(3);
-  const auto initial = initial_map(shape, shape, landmarks, 2);
-  ASSERT_TRUE(initial) << initial.error().message;
+  const auto initial = initial_maps(shape, shape, landmarks, 2);
+  ASSERT_FALSE(initial.empty());
   const MapOptions options;
   Verdict::CoarseMap winner{
       std::make_unique<SphereMap>(shape, shape, landmarks, options), 0, landmarks};
-  ASSERT_TRUE(winner.map->start(*initial));
+  ASSERT_TRUE(winner.map->start(initial.front()));
   winner.map->optimize_coarse();
   EXPECT_TRUE(slipped_extremities(*winner.map, shape, shape, landmarks).empty());
   EXPECT_FALSE(guide_by_extremities(shape, shape, winner, {}, options));
