@@ -26,7 +26,10 @@ class Search {
         target_(target),
         options_(options),
         most_pairs_(std::min(source.count(), target.count())),
-        least_pairs_(most_pairs_ > options.least_pairs ? most_pairs_ - 1 : most_pairs_) {
+        reflected_(!options.source_partner.empty() && !options.target_partner.empty()),
+        least_pairs_(reflected_
+                         ? std::min(most_pairs_, options.least_pairs)
+                         : std::max(std::min(most_pairs_, options.least_pairs), most_pairs_ - 1)) {
     signature_.resize(source.count(), target.count());
     for (int i = 0; i < source.count(); ++i)
       for (int j = 0; j < target.count(); ++j)
@@ -59,6 +62,7 @@ class Search {
     for (int j = is_fixed ? tip : options_.fixed; j < (is_fixed ? tip + 1 : target_.count()); ++j) {
       if (std::find(partial.target.begin(), partial.target.end(), j) != partial.target.end())
         continue;
+      if (!is_fixed && !agrees(partial, tip, j)) continue;
       Partial next = partial;
       ++next.pairs;
       next.signature += signature_(tip, j);
@@ -70,10 +74,24 @@ class Search {
       finish(std::move(next), out);
     }
     const int still_possible = partial.pairs + source_.count() - tip - 1;
-    if (is_fixed || still_possible < least_pairs_) return;
+    if (is_fixed || still_possible < least_pairs_ || !agrees(partial, tip, -1)) return;
     Partial next = partial;
     next.target.push_back(-1);
     finish(std::move(next), out);
+  }
+
+  /// Whether the reflections allow `tip` to go to j (-1: to be left out) after the ones before it.
+  [[nodiscard]] bool agrees(const Partial& partial, int tip, int j) const {
+    if (!reflected_) return true;
+    const int partner = options_.source_partner[idx(tip)];
+    if (partner < 0 || (j < 0 && partner == tip)) return true;
+    const int image = j < 0 ? -1 : options_.target_partner[idx(j)];
+    if (j >= 0 && image < 0) return true;
+    if (j >= 0 && (partner == tip || image == j)) return partner == tip && image == j;
+    if (partner > tip) return true;  // its partner will be asked
+    const int there = partial.target[idx(partner)];
+    if (there >= 0 && options_.target_partner[idx(there)] < 0) return true;
+    return there == image;
   }
 
   void finish(Partial partial, std::vector<Partial>& out) const {
@@ -121,7 +139,9 @@ class Search {
   const TipDescriptors& source_;
   const TipDescriptors& target_;
   const ProposalOptions& options_;
-  int most_pairs_, least_pairs_;
+  int most_pairs_;
+  bool reflected_;  ///< whether reflections have a say
+  int least_pairs_;
   Eigen::MatrixXd signature_;  ///< source tips x target tips
 };
 

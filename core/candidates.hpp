@@ -47,6 +47,11 @@ struct ProposalOptions {
   /// The first `fixed` tips of both surfaces are landmarks: the i-th goes to the i-th in every
   /// assignment, and their distances say where the others belong.
   int fixed = 0;
+  /// Per tip the one that a reflection of its surface exchanges it with (itself if it stays), -1 if
+  /// that is not known. Where both are given, assignments must take exchanged tips to exchanged
+  /// ones and those that stay to those that stay, and may leave out any number of tips beyond
+  /// `least_pairs`.
+  std::vector<int> source_partner = {}, target_partner = {};
   /// Partial assignments kept a step when there are too many to try them all.
   int beam = 3000;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -10,6 +11,8 @@ namespace crosspatch {
 /// One proposed correspondence of a few points, and what the bijective map through them costs.
 struct Candidate {
   std::vector<Landmark> landmarks;
+  /// What speaks against it before any map is made, in units of the distortion; the judge adds it.
+  double prior = 0;
   double distortion = 0;  ///< disc_distortion of the best chain; infinite if none could be cut
   /// What is left when the coarse map is optimised: the logarithm of its energy plus its
   /// SphereMap::coarse_distortion, less a share of its SphereMap::coarse_chirality. Infinite
@@ -83,10 +86,12 @@ struct Verdict {
 /// unoptimised map tells what is wrong by far, the optimised one what is better. A body whose two
 /// sides are alike has a mirrored map that costs as little; the chirality fields tell them apart.
 /// All are optimised roughly first, and only the best that differ from each other to the end.
+/// `penalty` is added to the energy of every map; it may be called from several threads.
 /// kNoCorrespondence if none can be optimised. Shapes must outlive the verdict.
 Result<Verdict> play_finals(const Shape& source,
                             const Shape& target,
                             Judgement judgement,
-                            const MapOptions& options);
+                            const MapOptions& options,
+                            const std::function<double(const SphereMap&)>& penalty = {});
 
 }  // namespace crosspatch

@@ -4,12 +4,14 @@
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <tuple>
 #include <utility>
 
 #include "param/extremities.hpp"
 #include "param/join_openings.hpp"
+#include "param/symmetry.hpp"
 
 namespace crosspatch {
 namespace {
@@ -26,21 +28,50 @@ Result<std::pair<T, T>> both(Make make) {
   return std::pair<T, T>(std::move(*a), std::move(*b));
 }
 
+/// Assignments of the tips, those that the reflections agree with first, and how many these are.
+std::pair<std::vector<TipAssignment>, size_t> propose_for(
+    const std::pair<ShapeFeatures, ShapeFeatures>& features,
+    const std::optional<Reflections>& reflections,
+    const ProposalOptions& options) {
+  const TipDescriptors a = tip_descriptors(features.first), b = tip_descriptors(features.second);
+  std::vector<TipAssignment> assignments;
+  const double trust = reflections ? reflections->trust() : 0;
+  if (trust > 0) {
+    constexpr double kShare = 2.0 / 3;
+    ProposalOptions symmetric = options;
+    symmetric.keep = static_cast<int>(std::lround(kShare * trust * options.keep));
+    symmetric.source_partner = exchanged_tips(reflections->source, features.first);
+    symmetric.target_partner = exchanged_tips(reflections->target, features.second);
+    assignments = propose(a, b, symmetric);
+  }
+  const size_t agreeing = assignments.size();
+  for (TipAssignment& assignment : propose(a, b, options)) {
+    const auto same = [&](const TipAssignment& other) { return other.pairs == assignment.pairs; };
+    if (static_cast<int>(assignments.size()) < options.keep &&
+        std::none_of(assignments.begin(), assignments.end(), same))
+      assignments.push_back(std::move(assignment));
+  }
+  return {std::move(assignments), agreeing};
+}
+
 /// The given landmarks, alone and with each proposed assignment of the other tips.
-std::vector<Candidate> make_candidates(const ShapeFeatures& source,
-                                       const ShapeFeatures& target,
+std::vector<Candidate> make_candidates(const std::pair<ShapeFeatures, ShapeFeatures>& features,
                                        const std::vector<Landmark>& given,
+                                       const std::optional<Reflections>& reflections,
                                        ProposalOptions options) {
+  // Some of these take places in the finals too: reflections may be wrong.
+  constexpr double kDisagrees = 0.3;
+  options.fixed = static_cast<int>(given.size());
+  const auto [assignments, agreeing] = propose_for(features, reflections, options);
   std::vector<Candidate> candidates;
   if (given.size() >= 2) candidates.push_back({given});
-  options.fixed = static_cast<int>(given.size());
-  for (const TipAssignment& assignment :
-       propose(tip_descriptors(source), tip_descriptors(target), options)) {
+  for (size_t a = 0; a < assignments.size(); ++a) {
     Candidate candidate{given};
-    for (const auto& [i, j] : assignment.pairs)
+    if (reflections && a >= agreeing) candidate.prior = kDisagrees * reflections->trust();
+    for (const auto& [i, j] : assignments[a].pairs)
       if (i >= options.fixed)
-        candidate.landmarks.push_back({source.tips[static_cast<size_t>(i)].vertex,
-                                       target.tips[static_cast<size_t>(j)].vertex,
+        candidate.landmarks.push_back({features.first.tips[static_cast<size_t>(i)].vertex,
+                                       features.second.tips[static_cast<size_t>(j)].vertex,
                                        false});
     if (candidate.landmarks.size() >= std::max<size_t>(2, given.size() + 1))
       candidates.push_back(std::move(candidate));
@@ -49,19 +80,33 @@ std::vector<Candidate> make_candidates(const ShapeFeatures& source,
 }
 
 /// What stages after the proposals ask of the features.
-void hand_over(ShapeFeatures features, Shape& shape) {
-  shape.chirality = std::move(features.chirality);
+void hand_over(const ShapeFeatures& features, Shape& shape) {
+  shape.chirality = features.chirality;
   for (const Tip& extremity : features.extremities) shape.extremities.push_back(extremity.vertex);
-  shape.extremity_distances = std::move(features.extremity_distances);
+  shape.extremity_distances = features.extremity_distances;
 }
 
-std::vector<int> side(const std::vector<Candidate>& candidates, int Landmark::*vertex) {
+std::vector<int> vertices_of(const std::vector<Landmark>& landmarks, int Landmark::*vertex) {
   std::vector<int> vertices;
-  for (const Candidate& c : candidates)
-    for (const Landmark& l : c.landmarks) vertices.push_back(l.*vertex);
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  for (const Landmark& l : landmarks) vertices.push_back(l.*vertex);
   return vertices;
+}
+
+/// Both surfaces, with coarse levels that hold landmarks and tips.
+Result<std::pair<Shape, Shape>> make_shapes(const TriangleMesh& source,
+                                            const TriangleMesh& target,
+                                            const std::vector<Landmark>& given,
+                                            const std::vector<Tip>& source_tips,
+                                            const std::vector<Tip>& target_tips,
+                                            const ShapeOptions& options) {
+  return both<Shape>([&](int i) {
+    std::vector<int> held =
+        vertices_of(given, i == 0 ? &Landmark::source_vertex : &Landmark::target_vertex);
+    for (const Tip& tip : i == 0 ? source_tips : target_tips) held.push_back(tip.vertex);
+    std::sort(held.begin(), held.end());
+    held.erase(std::unique(held.begin(), held.end()), held.end());
+    return make_shape(i == 0 ? source : target, held, options);
+  });
 }
 
 /// Places of coarse maps that differ from each other, from each place on: differing[i] begins with
@@ -82,6 +127,57 @@ std::vector<std::vector<size_t>> differing_maps(const Verdict& verdict) {
   return differing;
 }
 
+/// What the judge is given.
+struct Contest {
+  std::pair<Shape, Shape> shapes;
+  std::vector<Candidate> candidates;
+  std::optional<Reflections> reflections;  ///< empty too where nobody looked
+};
+
+using Stage = std::function<void(const char*)>;
+
+Result<Contest> without_features(const TriangleMesh& source,
+                                 const TriangleMesh& target,
+                                 const std::vector<Landmark>& given,
+                                 const MatchOptions& options,
+                                 const Stage& stage) {
+  stage("embedding");
+  return make_shapes(source, target, given, {}, {}, options.shape)
+      .map([&](std::pair<Shape, Shape> shapes) {
+        return Contest{std::move(shapes), {{given}}, std::nullopt};
+      });
+}
+
+Result<Contest> with_features(const TriangleMesh& source,
+                              const TriangleMesh& target,
+                              const std::vector<Landmark>& given,
+                              const MatchOptions& options,
+                              const Stage& stage) {
+  stage("features");
+  auto features = both<ShapeFeatures>(
+      [&](int i) { return compute_features(i == 0 ? source : target, options.features); });
+  if (!features) return tl::unexpected(features.error());
+  auto& [a, b] = *features;
+  stage("embedding");
+  auto shapes = make_shapes(source, target, given, a.tips, b.tips, options.shape);
+  if (!shapes) return tl::unexpected(shapes.error());
+  hand_over(a, shapes->first);
+  hand_over(b, shapes->second);
+  stage("symmetry");
+  Contest contest{std::move(*shapes), {}, std::nullopt};
+  contest.reflections = find_reflections(contest.shapes, *features, options.map);
+  a = with_landmarks(source, std::move(a), vertices_of(given, &Landmark::source_vertex));
+  b = with_landmarks(target, std::move(b), vertices_of(given, &Landmark::target_vertex));
+  contest.candidates = make_candidates(*features, given, contest.reflections, options.proposal);
+  if (contest.candidates.empty())
+    return fail(ErrorCode::kNoCorrespondence,
+                fmt::format("match: {} and {} tips, no assignment agrees with the {} landmarks",
+                            a.tips.size(),
+                            b.tips.size(),
+                            given.size()));
+  return contest;
+}
+
 /// The map of two closed surfaces of any area.
 Result<MatchedMap> match_closed(const TriangleMesh& source,
                                 const TriangleMesh& target,
@@ -90,62 +186,37 @@ Result<MatchedMap> match_closed(const TriangleMesh& source,
   const auto stage = [&](const char* name) {
     if (options.progress) options.progress(name);
   };
-  std::vector<Candidate> candidates{{given}};
-  std::optional<std::pair<ShapeFeatures, ShapeFeatures>> features;
-  if (static_cast<int>(given.size()) < options.enough_landmarks) {
-    stage("features");
-    auto found = both<ShapeFeatures>([&](int i) {
-      const TriangleMesh& mesh = i == 0 ? source : target;
-      std::vector<int> vertices;
-      for (const Landmark& l : given)
-        vertices.push_back(i == 0 ? l.source_vertex : l.target_vertex);
-      return compute_features(mesh, options.features).map([&](ShapeFeatures own) {
-        return with_landmarks(mesh, std::move(own), vertices);
-      });
-    });
-    if (!found) return tl::unexpected(found.error());
-    features = std::move(*found);
-    candidates = make_candidates(features->first, features->second, given, options.proposal);
-    if (candidates.empty())
-      return fail(ErrorCode::kNoCorrespondence,
-                  fmt::format("match: {} and {} tips, no assignment agrees with the {} landmarks",
-                              features->first.tips.size(),
-                              features->second.tips.size(),
-                              given.size()));
-  }
-  stage("embedding");
-  auto shapes = both<Shape>([&](int i) {
-    return make_shape(
-        i == 0 ? source : target,
-        side(candidates, i == 0 ? &Landmark::source_vertex : &Landmark::target_vertex),
-        options.shape);
-  });
-  if (!shapes) return tl::unexpected(shapes.error());
-  if (features) {
-    hand_over(std::move(features->first), shapes->first);
-    hand_over(std::move(features->second), shapes->second);
-  }
+  const bool decided = static_cast<int>(given.size()) >= options.enough_landmarks;
+  auto contest =
+      (decided ? without_features : with_features)(source, target, given, options, stage);
+  if (!contest) return tl::unexpected(contest.error());
+  const auto& [a, b] = contest->shapes;
+  const std::optional<Reflections>& reflections = contest->reflections;
+  const auto penalty = [&](const SphereMap& map) {
+    return reflections ? symmetry_penalty(map, a, b, *reflections) : 0;
+  };
   stage("judging");
-  auto judgement = judge(shapes->first, shapes->second, std::move(candidates), options.judge);
+  auto judgement = judge(a, b, std::move(contest->candidates), options.judge);
   if (!judgement) return tl::unexpected(judgement.error());
   stage("finals");
-  auto verdict = play_finals(shapes->first, shapes->second, std::move(*judgement), options.map);
+  auto verdict = play_finals(a, b, std::move(*judgement), options.map, penalty);
   if (!verdict) return tl::unexpected(verdict.error());
-  const auto guided = guide_by_extremities(
-      shapes->first, shapes->second, verdict->maps[0], options.shape, options.map);
+  const auto guided = guide_by_extremities(a, b, verdict->maps[0], options.shape, options.map);
   stage("map");
   MatchedMap matched;
   matched.ranking = std::move(verdict->ranking);
   matched.margin = verdict->margin;
   matched.mirrored_margin = verdict->mirrored_margin;
+  if (reflections && reflections->trust() >= 1)
+    matched.asymmetry = asymmetry(*verdict->maps[0].map, a, b, *reflections);
   // Where landmarks strain the map, the best coarse map may be too crumpled to be refined.
   const auto differing =
       options.alternatives > 0 ? differing_maps(*verdict) : std::vector<std::vector<size_t>>{};
   size_t winner = 0;
   Result<MapResult> result = fail(ErrorCode::kInternal, "not tried");
-  if (guided) result = finish_map(*guided->map, shapes->first, shapes->second);
+  if (guided) result = finish_map(*guided->map, a, b);
   for (size_t i = 0; i < verdict->maps.size() && !result; ++i) {
-    result = finish_map(*verdict->maps[i].map, shapes->first, shapes->second);
+    result = finish_map(*verdict->maps[i].map, a, b);
     winner = i;
   }
   if (!result) return tl::unexpected(result.error());
@@ -156,7 +227,7 @@ Result<MatchedMap> match_closed(const TriangleMesh& source,
     if (i == winner || static_cast<int>(matched.alternatives.size()) >= options.alternatives)
       continue;
     const Verdict::CoarseMap& other = verdict->maps[i];
-    if (auto finished = finish_map(*other.map, shapes->first, shapes->second))
+    if (auto finished = finish_map(*other.map, a, b))
       matched.alternatives.push_back(
           {other.landmarks, other.energy - verdict->maps[winner].energy, std::move(*finished)});
   }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,9 @@ struct MatchedMap {
   std::vector<Candidate> ranking;  ///< by the finals and the judge; ranking[0] was mapped
   double margin = 0;  ///< Verdict::margin; 0 if the winner could not be refined and a rival was
   double mirrored_margin = 0;  ///< Verdict::mirrored_margin, likewise
+  /// See asymmetry(), of the coarse map that was chosen; empty where reflections are not to be
+  /// believed or nobody asked.
+  std::optional<double> asymmetry = {};
   MapResult result;
   /// Other ways to see it: finished maps of the finals, best first, of which each lies farther than
   /// kSameMap from the winner and from those before it.

@@ -149,8 +149,12 @@ Result<MorseSmaleComplex> detailed_complex(const TriangleMesh& mesh) {
 
 }  // namespace
 
-double confidence(double margin, const MapQuality& quality) {
-  return std::clamp(std::min(margin / kSafeMargin, kSafeEnergy / quality.percentile_99), 0.0, 1.0);
+double confidence(double margin, const MapQuality& quality, std::optional<double> asymmetry) {
+  return std::clamp(std::min({margin / kSafeMargin,
+                              kSafeEnergy / quality.percentile_99,
+                              kSafeAsymmetry / std::max(asymmetry.value_or(0), 1e-12)}),
+                    0.0,
+                    1.0);
 }
 
 std::string crumpled_sentence(const MatchedMap& matched) {
@@ -263,7 +267,8 @@ Result<Matching> judged_matching(const PairRun& run, Progress& progress) {
     given_source.insert(landmark.source_vertex);
     given_target.insert(landmark.target_vertex);
   }
-  const double trust = confidence(run.matched.margin, run.matched.result.quality);
+  const double trust =
+      confidence(run.matched.margin, run.matched.result.quality, run.matched.asymmetry);
   for (Match match : match_nodes(source, target, *a, *b, run.matched.result.map).matches) {
     if (given_source.contains(match.source_vertex) || given_target.contains(match.target_vertex))
       continue;

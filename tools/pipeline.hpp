@@ -15,7 +15,7 @@
 namespace crosspatch {
 
 /// The largest number of stages up to the map that report progress.
-constexpr int kMapStages = 7;
+constexpr int kMapStages = 8;
 
 /// All that a run over a pair has made, stage by stage; later stages are empty where it stopped
 /// before. A map that was given has no ranking.
@@ -47,17 +47,23 @@ Result<Matching> paper_matching(const PairRun& run, Progress& progress);
 Result<Matching> judged_matching(const PairRun& run, Progress& progress);
 
 /// A map that was found is *sure* from this margin of the finals on, if 99 % of it stay below
-/// kSafeEnergy. Chosen on FAUST, TOSCA, SMAL and SHREC'07, where 140 of 192 pairs are sure and the
-/// mean error of 138 of them is below 10 % of the square root of the area; see docs/benchmarks.md.
-constexpr double kSafeMargin = 0.13;
+/// kSafeEnergy and its asymmetry below kSafeAsymmetry. Chosen on FAUST, SMAL, SHREC'07 and the
+/// gorillas and humans of TOSCA, where 99 of 140 pairs are sure and the mean error of 98 of them is
+/// below 10 % of the square root of the area; see docs/benchmarks.md.
+constexpr double kSafeMargin = 0.08;
 
 /// Energy that 99 % of a sure map stay below, a stretch of ten: beyond it one surface has parts
 /// that the other lacks, or the two are not alike at all.
 constexpr double kSafeEnergy = 100;
 
+/// Asymmetry (see MatchedMap) of a sure map at most: right maps of four-legged animals, whose poses
+/// make reflections inexact, have up to 0.08, and wrong ones 0.1 and more.
+constexpr double kSafeAsymmetry = 0.1;
+
 /// How far a map that was found can be trusted, in [0, 1]: 1 is sure. The least of the margin over
-/// kSafeMargin and of kSafeEnergy over the energy that 99 % stay below.
-double confidence(double margin, const MapQuality& quality);
+/// kSafeMargin, of kSafeEnergy over the energy that 99 % stay below and of kSafeAsymmetry over the
+/// asymmetry, where that is known.
+double confidence(double margin, const MapQuality& quality, std::optional<double> asymmetry = {});
 
 /// Energy (|J|^2 + |J^-1|^2; isometry: 4) that 99 % of a map that was found may reach: beyond it, a
 /// stretch of thirty, surfaces were forced on each other that do not correspond. The right maps of

@@ -35,6 +35,7 @@ std::string Progress::time_left() const {
                                                     {"target", 0.01},
                                                     {"features", 0.05},
                                                     {"embedding", 0.2},
+                                                    {"symmetry", 0.1},
                                                     {"judging", 0.06},
                                                     {"finals", 0.3},
                                                     {"map", 0.35},

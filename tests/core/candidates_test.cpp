@@ -116,6 +116,29 @@ TEST(Candidates, KeepFixedTipsTogether) {
   expect_well_formed(list, 6, 5);
 }
 
+TEST(Candidates, TakeTipsThatAReflectionExchangesToSuch) {
+  // The source has two pairs and a tip of its own, the target two pairs, two such tips and one of
+  // which nothing is known.
+  const std::vector<int> source{1, 0, 3, 2, 4}, target{0, 2, 1, 4, 3, 5, -1};
+  const auto list =
+      propose(scattered(5, 3),
+              scattered(7, 4),
+              {.keep = 100000, .source_partner = source, .target_partner = target, .beam = 100000});
+  ASSERT_FALSE(list.empty());
+  std::set<size_t> sizes;
+  for (const TipAssignment& assignment : list) {
+    sizes.insert(assignment.pairs.size());
+    std::vector<int> image(5, -1);
+    for (const auto& [s, t] : assignment.pairs) image[static_cast<size_t>(s)] = t;
+    for (size_t s = 0; s < 5; ++s) {
+      const int here = image[s], there = image[static_cast<size_t>(source[s])];
+      if (here == 6 || there == 6) continue;  // nothing is known
+      EXPECT_EQ(there, here < 0 ? -1 : target[static_cast<size_t>(here)]);
+    }
+  }
+  EXPECT_EQ(sizes, (std::set<size_t>{3, 4, 5}));
+}
+
 TEST(Candidates, OfADeformedCreatureHoldTheTruthEarly) {
   const TriangleMesh a = shapes::creature(3), b = shapes::creature(3, 1.25);
   const ShapeFeatures source = compute_features(a).value(), target = compute_features(b).value();

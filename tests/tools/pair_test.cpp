@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "core/creatures.hpp"
 #include "pair_of_surfaces.hpp"
 #include "shapes.hpp"
 #include "tools/map_text.hpp"
@@ -101,6 +102,22 @@ TEST_F(PairOfSurfaces, ConfigurationIsPrintedAndReadBack) {
       run("transfer source.obj target.off -o out/c.glb --config wrong.toml");
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_THAT(wrong.err, testing::HasSubstr("transfer.siez"));
+}
+
+TEST_F(PairOfSurfaces, ATableHasNoLeftAndItIsSaid) {
+  // Turned round by half a turn it is the same, and no map tells which way round is right.
+  const Vector3d none = Vector3d::Zero(), leg(1.2, 0.7, -1.3);
+  const std::array<Vector3d, 6> legs{leg,
+                                     Vector3d(leg.x(), -leg.y(), leg.z()),
+                                     Vector3d(-leg.x(), leg.y(), leg.z()),
+                                     Vector3d(-leg.x(), -leg.y(), leg.z()),
+                                     none,
+                                     none};
+  write_obj("table.obj", shapes::creature(2, 1, legs));
+  write_obj("other.obj", shapes::creature(3, 1, legs));
+  const test::Outcome unsure = run("map table.obj other.obj -q -o out/map.txt");
+  ASSERT_EQ(unsure.exit_code, 0) << unsure.err;
+  EXPECT_THAT(unsure.err, HasSubstr("the two are symmetric: another map fits as well"));
 }
 
 TEST_F(PairOfSurfaces, MatchesNameVerticesOfBothFilesOnce) {
