@@ -14,9 +14,9 @@ struct Candidate {
   /// What speaks against it before any map is made, in units of the distortion; the judge adds it.
   double prior = 0;
   double distortion = 0;  ///< disc_distortion of the best chain; infinite if none could be cut
-  /// What is left when the coarse map is optimised: the logarithm of its energy plus its
-  /// SphereMap::coarse_distortion, less a share of its SphereMap::coarse_chirality. Infinite
-  /// without a map; see play_finals.
+  /// What is left when the coarse map is optimised: its SphereMap::coarse_distortion plus a share
+  /// of the logarithm of its energy, less a share of its SphereMap::coarse_chirality, and the
+  /// penalty of play_finals. Infinite without a map.
   double energy = 0;
 };
 

@@ -59,7 +59,8 @@ std::vector<Candidate> make_candidates(const std::pair<ShapeFeatures, ShapeFeatu
                                        const std::vector<Landmark>& given,
                                        const std::optional<Reflections>& reflections,
                                        ProposalOptions options) {
-  // Some of these take places in the finals too: reflections may be wrong.
+  // Of the distortion, as much as a map that tears pairs apart mostly pays in the finals. Some of
+  // these get there all the same: reflections may be wrong.
   constexpr double kDisagrees = 0.3;
   options.fixed = static_cast<int>(given.size());
   const auto [assignments, agreeing] = propose_for(features, reflections, options);
@@ -220,7 +221,10 @@ Result<MatchedMap> match_closed(const TriangleMesh& source,
     winner = i;
   }
   if (!result) return tl::unexpected(result.error());
-  if (winner > 0) matched.margin = matched.mirrored_margin = 0;
+  if (winner > 0) {
+    matched.margin = matched.mirrored_margin = 0;
+    matched.asymmetry.reset();  // the other map's
+  }
   matched.result = std::move(*result);
   if (options.alternatives > 0) stage("others");
   for (const size_t i : differing.empty() ? std::vector<size_t>{} : differing[winner]) {

@@ -81,7 +81,9 @@ Shape mirror_image(const Shape& shape) {
 std::optional<Reflection> find_reflection(const Shape& shape,
                                           const ShapeFeatures& features,
                                           const MapOptions& options) {
-  // A reflection is its own inverse, so that pairs of tips come in both directions.
+  // A reflection is its own inverse, so that pairs of tips come in both directions. A body's own
+  // costs next to nothing as a proposal: few are enough, and the judge's usual effort is not
+  // needed.
   const ProposalOptions proposal{.keep = 200};
   constexpr size_t kMost = 24;
   const JudgeOptions few{.finalists = 5, .final_chains = 8, .finals = 5, .leaders = 0};
@@ -104,7 +106,7 @@ std::optional<Reflection> find_reflection(const Shape& shape,
   };
   const auto verdict = play_finals(shape, image, std::move(*judgement), options, penalty);
   if (!verdict) return std::nullopt;
-  Reflection reflection{{}, verdict->maps[0].energy, verdict->margin};
+  Reflection reflection{{}, verdict->margin};
   std::vector<int> vertices(static_cast<size_t>(shape.mesh.vertex_count()));
   std::iota(vertices.begin(), vertices.end(), 0);
   for (const PlaceOnMesh& place : verdict->maps[0].map->coarse_images(vertices))
@@ -113,7 +115,7 @@ std::optional<Reflection> find_reflection(const Shape& shape,
 }
 
 std::vector<int> exchanged_tips(const Reflection& reflection, const ShapeFeatures& features) {
-  constexpr double kNear = 0.1;
+  constexpr double kNear = 0.1;  // what is released slips by less, and paws are farther apart
   std::vector<int> near;
   for (const Tip& tip : features.tips) {
     const int image = reflection.partner[static_cast<size_t>(tip.vertex)];

@@ -13,9 +13,7 @@ namespace crosspatch {
 /// around.
 struct Reflection {
   std::vector<int> partner;  ///< per vertex: the vertex nearest to its image
-  double energy = 0;         ///< Candidate::energy of the coarse map (isometry: 1.2 log 4), plus
-                             ///< what it is punished for not being its own inverse
-  double margin = 0;         ///< Verdict::margin
+  double margin = 0;         ///< Verdict::margin; maps that are not their own inverses are punished
 };
 
 /// The same surface seen in a mirror: vertices keep their numbers, faces face outwards.

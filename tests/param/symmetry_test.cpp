@@ -124,7 +124,7 @@ TEST(Symmetry, AMapThatTakesATailToALegDoesNotKeepIt) {
 }
 
 TEST(Symmetry, WhereTwoReflectionsAreAsGoodNoneIsTrusted) {
-  Reflections reflections{{{}, 0, 0.5}, {{}, 0, 0.05}};
+  Reflections reflections{{{}, 0.5}, {{}, 0.05}};
   EXPECT_EQ(reflections.trust(), 0);
   reflections.target.margin = 0.09;
   EXPECT_NEAR(reflections.trust(), 0.5, 1e-12);
